@@ -1,0 +1,74 @@
+#include <core/check.hpp>
+#include <core/output_file.hpp>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <string>
+#include <system_error>
+#include <unistd.h>
+
+namespace supple {
+
+namespace {
+
+std::filesystem::path follow_links(const std::filesystem::path& path) {
+  std::error_code no_link;
+  return std::filesystem::is_symlink(path, no_link) ? std::filesystem::weakly_canonical(path, no_link) : path;
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::filesystem::path& path) : path_(follow_links(path)) {
+  if (!path_.has_filename()) throw InputError(path.string() + ": cannot be written: it names no file");
+  if (std::error_code unknown; std::filesystem::is_directory(path_, unknown))
+    throw InputError(path.string() + ": cannot be written: it is a folder");
+  static std::atomic<unsigned> serial{0};
+  do {
+    temporary_ = path_.parent_path() / ("." + path_.filename().string() + "." + std::to_string(::getpid()) +
+                                        "-" + std::to_string(serial++) + ".tmp");
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (descriptor_ < 0 && errno == EEXIST);
+  if (descriptor_ < 0) fail("create");
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) fail("write");
+    if (written > 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void OutputFile::commit() {
+  if (::fsync(descriptor_) != 0) fail("write");
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("replace");
+  ::close(descriptor_);
+  descriptor_ = -1;
+  // The new name is on the disk only once its folder is; where folders cannot be synchronised, the file still
+  // is.
+  const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
+  if (const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); directory >= 0) {
+    ::fsync(directory);
+    ::close(directory);
+  }
+}
+
+void OutputFile::fail(const char* action) const {
+  throw InputError(path_.string() + ": cannot " + action + ": " + std::strerror(errno));
+}
+
+void write_file(const std::filesystem::path& path, std::string_view content) {
+  OutputFile file(path);
+  file.write(content);
+  file.commit();
+}
+
+}  // namespace supple

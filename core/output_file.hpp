@@ -1,0 +1,36 @@
+#pragma once
+/// \file A file that appears whole or not at all.
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace supple {
+
+/// Collects output under a temporary name in the target's folder; commit() brings it to the disk and then
+/// gives it the target's name in one step. Until then, and after any failure, the old file stands as it was
+/// and nothing partial remains. Symbolic links are followed. \throws InputError naming the file and the
+/// system's reason, from every member but the destructor.
+class OutputFile {
+ public:
+  explicit OutputFile(const std::filesystem::path& path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
+  void commit();
+
+ private:
+  [[noreturn]] void fail(const char* action) const;
+
+  std::filesystem::path path_, temporary_;
+  int descriptor_ = -1;
+};
+
+/// The whole content at once.
+void write_file(const std::filesystem::path& path, std::string_view content);
+
+}  // namespace supple

@@ -1,0 +1,92 @@
+#include <core/check.hpp>
+#include <core/output_file.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace supple {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct OutputFileTest : testing::Test {
+  OutputFileTest() { fs::create_directories(folder); }
+  ~OutputFileTest() override { fs::remove_all(folder); }
+
+  std::string content() const {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  auto num_entries() const { return std::distance(fs::directory_iterator(folder), {}); }
+
+  const fs::path folder = fs::temp_directory_path() / ("supple-output-file-" + std::to_string(::getpid()));
+  const fs::path path = folder / "result.txt";
+};
+
+TEST_F(OutputFileTest, AppearsOnlyWhenCommitted) {
+  OutputFile file(path);
+  file.write("one ");
+  file.write("two");
+  EXPECT_FALSE(fs::exists(path));
+  file.commit();
+  EXPECT_EQ(content(), "one two");
+  EXPECT_EQ(num_entries(), 1);
+}
+
+TEST_F(OutputFileTest, AbandonedOutputLeavesTheOldFile) {
+  write_file(path, "old");
+  { OutputFile(path).write("new"); }
+  EXPECT_EQ(content(), "old");
+  EXPECT_EQ(num_entries(), 1);
+}
+
+TEST_F(OutputFileTest, TwoWritersOfOneFileDoNotMix) {
+  OutputFile first(path), second(path);
+  first.write("first");
+  second.write("second");
+  first.commit();
+  second.commit();
+  EXPECT_EQ(content(), "second");
+  EXPECT_EQ(num_entries(), 1);
+}
+
+TEST_F(OutputFileTest, FollowsSymbolicLinks) {
+  write_file(path, "old");
+  fs::create_symlink(path, folder / "link");
+  write_file(folder / "link", "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(content(), "new");
+}
+
+TEST_F(OutputFileTest, SaysWhyAFileCannotBeWritten) {
+  using testing::HasSubstr;
+  using testing::ThrowsMessage;
+  EXPECT_THAT([&] { write_file(folder, ""); }, ThrowsMessage<InputError>(HasSubstr("it is a folder")));
+  EXPECT_THAT([&] { write_file(folder / "no" / "file", ""); },
+              ThrowsMessage<InputError>(HasSubstr("No such file")));
+  EXPECT_THAT([&] { write_file("", ""); }, ThrowsMessage<InputError>(HasSubstr("names no file")));
+}
+
+TEST_F(OutputFileTest, FullDiskIsReportedAndLeavesTheOldFile) {
+  write_file(path, "old");
+  rlimit limit;
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1000, limit.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  EXPECT_THROW(write_file(path, std::string(100000, 'x')), InputError);
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(content(), "old");
+  EXPECT_EQ(num_entries(), 1);
+}
+
+}  // namespace
+}  // namespace supple
