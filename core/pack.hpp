@@ -11,8 +11,8 @@
 
 namespace supple {
 
-/// Eight doubles, operated on lane by lane with the vector instructions at hand. Its size and alignment (64 bytes)
-/// do not depend on compiler flags.
+/// Eight doubles, operated on lane by lane with the vector instructions at hand. Its size and alignment (64
+/// bytes) do not depend on compiler flags.
 struct Pack {
   static constexpr int size = 8;
   using Lanes = double __attribute__((vector_size(size * sizeof(double))));
@@ -34,10 +34,22 @@ struct Pack {
   void set(int lane, double value) { lanes[lane] = value; }
 
   Pack operator-() const { return {-lanes}; }
-  Pack& operator+=(const Pack& b) { lanes += b.lanes; return *this; }
-  Pack& operator-=(const Pack& b) { lanes -= b.lanes; return *this; }
-  Pack& operator*=(const Pack& b) { lanes *= b.lanes; return *this; }
-  Pack& operator/=(const Pack& b) { lanes /= b.lanes; return *this; }
+  Pack& operator+=(const Pack& b) {
+    lanes += b.lanes;
+    return *this;
+  }
+  Pack& operator-=(const Pack& b) {
+    lanes -= b.lanes;
+    return *this;
+  }
+  Pack& operator*=(const Pack& b) {
+    lanes *= b.lanes;
+    return *this;
+  }
+  Pack& operator/=(const Pack& b) {
+    lanes /= b.lanes;
+    return *this;
+  }
   friend Pack operator+(Pack a, const Pack& b) { return a += b; }
   friend Pack operator-(Pack a, const Pack& b) { return a -= b; }
   friend Pack operator*(Pack a, const Pack& b) { return a *= b; }
@@ -67,13 +79,27 @@ inline Pack sqrt(const Pack& a) {
   return map_lanes(a, [](double x) { return std::sqrt(x); });
 #endif
 }
-inline Pack abs(const Pack& a) { return {a.lanes < 0 ? -a.lanes : a.lanes}; }
-inline Pack min(const Pack& a, const Pack& b) { return {a.lanes < b.lanes ? a.lanes : b.lanes}; }
-inline Pack max(const Pack& a, const Pack& b) { return {a.lanes > b.lanes ? a.lanes : b.lanes}; }
-inline Pack log(const Pack& a) { return map_lanes(a, [](double x) { return std::log(x); }); }
-inline Pack exp(const Pack& a) { return map_lanes(a, [](double x) { return std::exp(x); }); }
-inline Pack cbrt(const Pack& a) { return map_lanes(a, [](double x) { return std::cbrt(x); }); }
-inline Pack acos(const Pack& a) { return map_lanes(a, [](double x) { return std::acos(x); }); }
+inline Pack abs(const Pack& a) {
+  return {a.lanes < 0 ? -a.lanes : a.lanes};
+}
+inline Pack min(const Pack& a, const Pack& b) {
+  return {a.lanes < b.lanes ? a.lanes : b.lanes};
+}
+inline Pack max(const Pack& a, const Pack& b) {
+  return {a.lanes > b.lanes ? a.lanes : b.lanes};
+}
+inline Pack log(const Pack& a) {
+  return map_lanes(a, [](double x) { return std::log(x); });
+}
+inline Pack exp(const Pack& a) {
+  return map_lanes(a, [](double x) { return std::exp(x); });
+}
+inline Pack cbrt(const Pack& a) {
+  return map_lanes(a, [](double x) { return std::cbrt(x); });
+}
+inline Pack acos(const Pack& a) {
+  return map_lanes(a, [](double x) { return std::acos(x); });
+}
 inline Pack atan2(const Pack& y, const Pack& x) {
   Pack result;
   for (int k = 0; k < Pack::size; ++k) result.set(k, std::atan2(y[k], x[k]));
@@ -87,7 +113,9 @@ inline Pack pow(const Pack& a, double exponent) {
 inline Pack where_positive(const Pack& a, const Pack& then, const Pack& otherwise) {
   return {a.lanes > 0 ? then.lanes : otherwise.lanes};
 }
-inline double where_positive(double a, double then, double otherwise) { return a > 0 ? then : otherwise; }
+inline double where_positive(double a, double then, double otherwise) {
+  return a > 0 ? then : otherwise;
+}
 
 }  // namespace supple
 
@@ -97,7 +125,15 @@ struct Eigen::NumTraits<supple::Pack> : Eigen::NumTraits<double> {
   using NonInteger = supple::Pack;
   using Nested = supple::Pack;
   using Literal = double;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 0,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = 1
+  };
 };
 template <typename BinaryOp>
 struct Eigen::ScalarBinaryOpTraits<supple::Pack, double, BinaryOp> {

@@ -16,7 +16,8 @@ thread_local bool inside_parallel_for = false;
 }  // namespace
 
 void set_num_threads(int threads) {
-  if (threads < 0) throw std::invalid_argument("number of threads is " + std::to_string(threads) + ", expected 0 or more");
+  if (threads < 0)
+    throw std::invalid_argument("number of threads is " + std::to_string(threads) + ", expected 0 or more");
   requested_threads = threads;
 }
 

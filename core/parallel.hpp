@@ -1,6 +1,6 @@
 #pragma once
-/// \file Loops over independent pieces of work. Results never depend on the number of threads: the pieces are fixed
-/// by the caller, and only who computes a piece varies.
+/// \file Loops over independent pieces of work. Results never depend on the number of threads: the pieces are
+/// fixed by the caller, and only who computes a piece varies.
 
 #include <core/types.hpp>
 
@@ -8,14 +8,14 @@
 
 namespace supple {
 
-/// Number of threads that parallel_for uses from now on; 0: one for each processor. \throws std::invalid_argument if
-/// negative.
+/// Number of threads that parallel_for uses from now on; 0: one for each processor. \throws
+/// std::invalid_argument if negative.
 void set_num_threads(int threads);
 int num_threads();
 
-/// Calls piece(k) for k = 0 … count − 1, each exactly once, from up to num_threads() threads; returns when all are
-/// done. Inside a piece, a further parallel_for runs serially. An exception of a piece is rethrown here once all
-/// threads have stopped.
+/// Calls piece(k) for k = 0 … count − 1, each exactly once, from up to num_threads() threads; returns when
+/// all are done. Inside a piece, a further parallel_for runs serially. An exception of a piece is rethrown
+/// here once all threads have stopped.
 void parallel_for(Index count, const std::function<void(Index)>& piece);
 
 /// Calls body(begin, end) on consecutive ranges of at most `grain` of 0 … count − 1.

@@ -17,10 +17,14 @@ enum class Status {
 
 constexpr std::string_view to_string(Status status) {
   switch (status) {
-    case Status::Converged: return "converged";
-    case Status::MaxIterations: return "max-iterations";
-    case Status::Stagnated: return "stagnated";
-    case Status::NotFinite: return "not-finite";
+    case Status::Converged:
+      return "converged";
+    case Status::MaxIterations:
+      return "max-iterations";
+    case Status::Stagnated:
+      return "stagnated";
+    case Status::NotFinite:
+      return "not-finite";
   }
   return "unknown";
 }

@@ -1,19 +1,168 @@
+#include <core/check.hpp>
 #include <physics/tet_mesh.hpp>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
+#include <span>
 
 namespace supple {
 
+namespace {
+
+/// Corner triples opposite to each corner, outward for a positively oriented tet.
+constexpr std::array<std::array<int, 3>, 4> tet_faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+/// Face 4 e + a is the one of tet e opposite to its corner a.
+Triangle face_nodes(const TetMesh& mesh, Index face) {
+  const Tet& tet = mesh.tets[face / 4];
+  const auto& corner = tet_faces[face % 4];
+  return {tet[corner[0]], tet[corner[1]], tet[corner[2]]};
+}
+
+/// Whether an odd number of swaps sorts the triangle: differs between the two sides of a face.
+bool is_odd(const Triangle& t) {
+  return ((t[0] > t[1]) + (t[0] > t[2]) + (t[1] > t[2])) % 2 == 1;
+}
+
+/// Calls visit(ids) for every set of equal keys, in order of keys; ids ascend. Item `id` has keys[id], whose
+/// smallest entry comes first and is below `count`: buckets by that entry leave little to sort.
+template <typename Key, typename Visit>
+void visit_equal(const std::vector<Key>& keys, Index count, const Visit& visit) {
+  std::vector<Index> bucket_end(count + 1, 0);
+  for (const Key& key : keys) ++bucket_end[key[0] + 1];
+  std::partial_sum(bucket_end.begin(), bucket_end.end(), bucket_end.begin());
+  std::vector<Index> ids(keys.size());
+  for (Index id = 0; id < static_cast<Index>(keys.size()); ++id) ids[bucket_end[keys[id][0]]++] = id;
+  for (Index bucket = 0, begin = 0; bucket < count; begin = bucket_end[bucket++]) {
+    const Index end = bucket_end[bucket];
+    std::sort(ids.begin() + begin, ids.begin() + end,
+              [&](Index a, Index b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
+    for (Index first = begin, last = begin; first < end; first = last) {
+      while (last < end && keys[ids[last]] == keys[ids[first]]) ++last;
+      visit(std::span<const Index>(ids.data() + first, last - first));
+    }
+  }
+}
+
+template <typename Visit>
+void visit_faces(const TetMesh& mesh, const Visit& visit) {
+  std::vector<Triangle> keys(4 * mesh.tets.size());
+  for (Index face = 0; face < 4 * mesh.num_tets(); ++face) {
+    keys[face] = face_nodes(mesh, face);
+    std::sort(keys[face].begin(), keys[face].end());
+  }
+  visit_equal(keys, mesh.num_nodes(), visit);
+}
+
+struct EdgeVectors {
+  Point ab, ac, ad;
+  EdgeVectors(const TetMesh& mesh, Index e) {
+    const Tet& tet = mesh.tets[e];
+    const Point a = mesh.nodes.row(tet[0]);
+    ab = mesh.nodes.row(tet[1]).transpose() - a;
+    ac = mesh.nodes.row(tet[2]).transpose() - a;
+    ad = mesh.nodes.row(tet[3]).transpose() - a;
+  }
+};
+
+/// The root of a union-find forest, with path halving.
+Index root_of(std::vector<Index>& parent, Index v) {
+  while (parent[v] != v) v = parent[v] = parent[parent[v]];
+  return v;
+}
+
+void unite(std::vector<Index>& parent, Index a, Index b) {
+  const Index r = root_of(parent, a), s = root_of(parent, b);
+  parent[std::max(r, s)] = std::min(r, s);
+}
+
+}  // namespace
+
 double tet_volume(const TetMesh& mesh, Index e) {
-  const Tet& tet = mesh.tets[e];
-  const Point a = mesh.nodes.row(tet[0]);
-  const Point ab = mesh.nodes.row(tet[1]).transpose() - a;
-  const Point ac = mesh.nodes.row(tet[2]).transpose() - a;
-  const Point ad = mesh.nodes.row(tet[3]).transpose() - a;
-  return ab.cross(ac).dot(ad) / 6;
+  const EdgeVectors tet(mesh, e);
+  return tet.ab.cross(tet.ac).dot(tet.ad) / 6;
+}
+
+int tet_orientation(const TetMesh& mesh, Index e) {
+  const EdgeVectors tet(mesh, e);
+  const double det = tet.ab.cross(tet.ac).dot(tet.ad);
+  const Point b = tet.ab.cwiseAbs(), c = tet.ac.cwiseAbs(), d = tet.ad.cwiseAbs();
+  const double permanent = (b[1] * c[2] + b[2] * c[1]) * d[0] + (b[2] * c[0] + b[0] * c[2]) * d[1] +
+                           (b[0] * c[1] + b[1] * c[0]) * d[2];
+  const double rounding =
+      4 * std::numeric_limits<double>::epsilon() * permanent;  // Shewchuk's (7 + 56 ε) ε, ε = 2⁻⁵³
+  return det > rounding ? 1 : det < -rounding ? -1 : 0;
+}
+
+double radius_ratio(const TetMesh& mesh, Index e) {
+  const EdgeVectors tet(mesh, e);
+  const Point bc = tet.ab.cross(tet.ac), cd = tet.ac.cross(tet.ad), db = tet.ad.cross(tet.ab);
+  const double det = std::abs(bc.dot(tet.ad));  // 6 V
+  if (!(det > 0)) return 0;
+  const double area =
+      (bc.norm() + cd.norm() + db.norm() + (tet.ac - tet.ab).cross(tet.ad - tet.ab).norm()) / 2;
+  const double inradius = det / (2 * area);
+  const double circumradius =
+      (tet.ad.squaredNorm() * bc + tet.ab.squaredNorm() * cd + tet.ac.squaredNorm() * db).norm() / (2 * det);
+  return 3 * inradius / circumradius;
+}
+
+void check_mesh(const TetMesh& mesh, const MeshNumbers& numbers) {
+  const auto name = [](const std::vector<std::int64_t>& number, Index k) {
+    return std::to_string(number.empty() ? k : number[k]);
+  };
+  const auto tet_name = [&](Index e) { return "tet " + name(numbers.tet, e); };
+  const auto node_name = [&](Index v) { return "node " + name(numbers.node, v); };
+
+  require(mesh.num_tets() > 0, "mesh has no tets");
+  if (!mesh.region.empty())
+    require_size("mesh.region", static_cast<Index>(mesh.region.size()), mesh.num_tets());
+  std::vector<char> used(mesh.num_nodes(), false);
+  for (Index e = 0; e < mesh.num_tets(); ++e) {
+    const Tet& tet = mesh.tets[e];
+    for (int a = 0; a < 4; ++a) {
+      const Index v = tet[a];
+      if (v < 0 || v >= mesh.num_nodes())
+        throw std::invalid_argument(tet_name(e) + " names node " + std::to_string(v) +
+                                    ", which does not exist");
+      if (std::find(tet.begin(), tet.begin() + a, v) != tet.begin() + a)
+        throw std::invalid_argument(tet_name(e) + " names " + node_name(v) + " twice");
+      used[v] = true;
+    }
+  }
+  for (Index v = 0; v < mesh.num_nodes(); ++v) {
+    if (!used[v]) throw std::invalid_argument(node_name(v) + " belongs to no tet");
+    if (!mesh.nodes.row(v).allFinite())
+      throw std::invalid_argument(node_name(v) + " has a coordinate that is not finite");
+  }
+  for (Index e = 0; e < mesh.num_tets(); ++e) {
+    const int orientation = tet_orientation(mesh, e);
+    const double volume = tet_volume(mesh, e);
+    if (!std::isfinite(volume) || (orientation == 1 && !(volume > 0)))
+      throw std::invalid_argument("the volume of " + tet_name(e) + " is beyond the range of numbers");
+    if (orientation == 0)
+      throw std::invalid_argument(tet_name(e) + " has zero volume: its nodes lie in a plane");
+    if (orientation < 0) throw std::invalid_argument(tet_name(e) + " is reversed: its volume is negative");
+  }
+  visit_faces(mesh, [&](std::span<const Index> faces) {
+    if (faces.size() == 1) return;
+    const Triangle t = face_nodes(mesh, faces[0]), s = face_nodes(mesh, faces[1]);
+    if (faces.size() == 2 && is_odd(t) != is_odd(s)) return;
+    const auto apex = [&](Index k) { return mesh.tets[faces[k] / 4][faces[k] % 4]; };
+    const std::string face = "face (" + name(numbers.node, t[0]) + ", " + name(numbers.node, t[1]) + ", " +
+                             name(numbers.node, t[2]) + ")";
+    const std::string pair = tet_name(faces[0] / 4) + " and " + tet_name(faces[1] / 4);
+    if (apex(0) == apex(1)) throw std::invalid_argument(pair + " have the same four nodes");
+    if (is_odd(t) == is_odd(s))
+      throw std::invalid_argument(pair + " overlap: they lie on the same side of their common " + face +
+                                  ", so the mesh is tangled");
+    throw std::invalid_argument(pair + " share their " + face + " with " + tet_name(faces[2] / 4) +
+                                ": at most two tets can meet at a face");
+  });
 }
 
 BoundingBox bounding_box(const Points& nodes) {
@@ -21,57 +170,53 @@ BoundingBox bounding_box(const Points& nodes) {
 }
 
 std::vector<Triangle> boundary_faces(const TetMesh& mesh) {
-  // Corner triples opposite to each corner, outward for a positively oriented tet.
-  static constexpr std::array<std::array<int, 3>, 4> faces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-  struct Face {
-    Triangle sorted;
-    Index id;
-  };
-  std::vector<Face> all;
-  all.reserve(4 * mesh.tets.size());
-  const auto corners = [&](Index id) {
-    const Tet& tet = mesh.tets[id / 4];
-    const auto& f = faces[id % 4];
-    return Triangle{tet[f[0]], tet[f[1]], tet[f[2]]};
-  };
-  for (Index id = 0; id < 4 * mesh.num_tets(); ++id) {
-    Triangle sorted = corners(id);
-    std::sort(sorted.begin(), sorted.end());
-    all.push_back({sorted, id});
-  }
-  std::sort(all.begin(), all.end(), [](const Face& a, const Face& b) {
-    return a.sorted != b.sorted ? a.sorted < b.sorted : a.id < b.id;
-  });
-  std::vector<Index> once;
-  for (std::size_t k = 0; k < all.size();) {
-    std::size_t end = k + 1;
-    while (end < all.size() && all[end].sorted == all[k].sorted) ++end;
-    if (end == k + 1) once.push_back(all[k].id);
-    k = end;
-  }
-  std::sort(once.begin(), once.end());
+  std::vector<char> outside(4 * mesh.tets.size(), false);
+  visit_faces(mesh, [&](std::span<const Index> faces) { outside[faces[0]] = faces.size() == 1; });
   std::vector<Triangle> result;
-  result.reserve(once.size());
-  for (const Index id : once) result.push_back(corners(id));
+  for (Index face = 0; face < 4 * mesh.num_tets(); ++face)
+    if (outside[face]) result.push_back(face_nodes(mesh, face));
   return result;
+}
+
+Hinges boundary_hinges(const TetMesh& mesh) {
+  const std::vector<Triangle> faces = boundary_faces(mesh);
+  std::vector<std::array<Index, 2>> edges(3 * faces.size());  // 3 f + a: the edge of face f from its corner a
+  for (std::size_t side = 0; side < edges.size(); ++side) {
+    const Index from = faces[side / 3][side % 3], to = faces[side / 3][(side + 1) % 3];
+    edges[side] = {std::min(from, to), std::max(from, to)};
+  }
+  Hinges hinges;
+  std::vector<Index> fan(3 * faces.size());  // of corner a of face f
+  std::iota(fan.begin(), fan.end(), Index{0});
+  std::vector<char> on_hinge(mesh.num_nodes(), false);
+  const auto corner_at = [&](Index side, Index node) {
+    return faces[side / 3][side % 3] == node ? side : side - side % 3 + (side + 1) % 3;
+  };
+  visit_equal(edges, mesh.num_nodes(), [&](std::span<const Index> sides) {
+    if (sides.size() > 2) {
+      ++hinges.edges;
+      for (const Index node : edges[sides[0]]) on_hinge[node] = true;
+    } else if (sides.size() == 2) {
+      for (const Index node : edges[sides[0]])
+        unite(fan, corner_at(sides[0], node), corner_at(sides[1], node));
+    }
+  });
+  std::vector<Index> num_fans(mesh.num_nodes(), 0);
+  for (Index corner = 0; corner < static_cast<Index>(fan.size()); ++corner)
+    if (root_of(fan, corner) == corner) ++num_fans[faces[corner / 3][corner % 3]];
+  for (Index v = 0; v < mesh.num_nodes(); ++v) hinges.nodes += num_fans[v] > 1 && !on_hinge[v];
+  return hinges;
 }
 
 NodeComponents connected_components(const TetMesh& mesh) {
   std::vector<Index> parent(mesh.num_nodes());
   std::iota(parent.begin(), parent.end(), Index{0});
-  const auto root = [&](Index v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
   for (const Tet& tet : mesh.tets)
-    for (int a = 1; a < 4; ++a) {
-      const Index r = root(tet[0]), s = root(tet[a]);
-      parent[std::max(r, s)] = std::min(r, s);
-    }
+    for (int a = 1; a < 4; ++a) unite(parent, tet[0], tet[a]);
   NodeComponents components;
   components.of_node.assign(mesh.num_nodes(), -1);
   for (Index v = 0; v < mesh.num_nodes(); ++v) {
-    const Index r = root(v);  // the smallest node of its component, so numbered before v
+    const Index r = root_of(parent, v);  // the smallest node of its component, so numbered before v
     components.of_node[v] = r == v ? components.count++ : components.of_node[r];
   }
   return components;

@@ -4,6 +4,7 @@
 #include <core/types.hpp>
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,8 +14,9 @@ namespace supple {
 using Tet = std::array<Index, 4>;
 using Triangle = std::array<Index, 3>;
 
-/// Nodes [m] and tetrahedra. A mesh that went through check_mesh or an io reader promises: finite coordinates,
-/// indices in range, four different nodes in a tet, volumes > 0, every node used.
+/// Nodes [m] and tetrahedra. A mesh that went through check_mesh or an io reader promises: finite
+/// coordinates, indices in range, four different nodes in a tet, volumes > 0, every node used, and at most
+/// two tets at a face, one on either side of it.
 struct TetMesh {
   Points nodes;             ///< n × 3 [m]
   std::vector<Tet> tets;    ///< m, each positively oriented: det(b − a, c − a, d − a) > 0
@@ -28,6 +30,24 @@ struct TetMesh {
 /// Signed volume [m³] of tet e.
 double tet_volume(const TetMesh& mesh, Index e);
 
+/// 1 if tet e is positively oriented, −1 if reversed, 0 if so flat that rounding may decide its sign.
+/// Relative to the size of the tet, so meshes in micrometres and in kilometres are judged alike. \see
+/// Shewchuk 1997, Sec. 4.3.
+int tet_orientation(const TetMesh& mesh, Index e);
+
+/// 3 inradius / circumradius of tet e: 1 if regular, 0 if flat.
+double radius_ratio(const TetMesh& mesh, Index e);
+
+/// How messages call nodes and tets: by the numbers that a file gives them. Empty: by index.
+struct MeshNumbers {
+  std::vector<std::int64_t> node, tet;
+};
+
+/// Makes sure that a mesh is fit for elasticity: keeps what TetMesh promises.
+/// \throws std::invalid_argument that names the first tet, node or face at fault. \note O(n + m log k), k the
+/// largest number of tets at a node.
+void check_mesh(const TetMesh& mesh, const MeshNumbers& numbers = {});
+
 /// The two corners of the axis-aligned bounding box of all nodes [m]; its diagonal is `extent().norm()`.
 struct BoundingBox {
   Point lower, upper;
@@ -39,7 +59,16 @@ BoundingBox bounding_box(const Points& nodes);
 /// Faces that belong to one tet only, oriented outward, in order of tets.
 std::vector<Triangle> boundary_faces(const TetMesh& mesh);
 
-/// Number of the connected component (through shared nodes) of each node, 0 … count − 1 in order of first nodes.
+/// Where the boundary is not a surface: parts of the solid hang together by an edge or a node only and turn
+/// about it freely.
+struct Hinges {
+  Index edges = 0;  ///< that belong to more than two boundary faces
+  Index nodes = 0;  ///< off those edges, with more than one fan of boundary faces
+};
+Hinges boundary_hinges(const TetMesh& mesh);
+
+/// Number of the connected component (through shared nodes) of each node, 0 … count − 1 in order of first
+/// nodes.
 struct NodeComponents {
   std::vector<Index> of_node;
   Index count = 0;

@@ -1,0 +1,48 @@
+#pragma once
+/// \file What deforms: internal energies that are sums of local terms.
+
+#include <core/types.hpp>
+
+#include <concepts>
+#include <span>
+
+namespace supple {
+
+/// Internal energy E(u) = Σᵢ eᵢ(uᵢ): m local terms ("components"); term i reads the nodes of its stencil,
+/// node_dim unknowns each, node after node. Force means the gradient: f = ∂E/∂u.
+///
+/// A model also promises, and tests/conformance checks: fᵢ = ∂eᵢ/∂uᵢ; Kᵢ = ∂fᵢ/∂uᵢ, symmetric; fᵢ(0) = 0 (the
+/// rest state is an equilibrium of every term); stencil nodes distinct and in range; const calls safe from
+/// several threads.
+template <typename F>
+concept ForceModel = requires(const F& model, Index i, const Local<F::local_dofs>& u_i) {
+  requires F::local_dofs == F::stencil_size* F::node_dim;                                // e.g. 12 = 4 · 3
+  { model.num_nodes() } -> std::convertible_to<Index>;                                   // n
+  { model.num_components() } -> std::convertible_to<Index>;                              // m
+  { model.stencil(i) } -> std::convertible_to<std::span<const Index, F::stencil_size>>;  // the nodes in u_i
+  { model.energy(i, u_i) } -> std::convertible_to<double>;                               // [J]
+  { model.force(i, u_i) } -> std::convertible_to<Local<F::local_dofs>>;                  // [N]
+  { model.stiffness(i, u_i) } -> std::convertible_to<LocalMatrix<F::local_dofs>>;        // [N/m]
+};
+
+/// True if eᵢ does not change when all nodes of its stencil move by the same vector. A model says so by
+/// `static constexpr bool translation_invariant = true`; work and storage of a reduced term then fall by one
+/// node.
+template <typename F>
+constexpr bool is_translation_invariant() {
+  if constexpr (requires { F::translation_invariant; })
+    return F::translation_invariant;
+  else
+    return false;
+}
+
+/// Nodes whose displacements (relative to the first node where the term is translation invariant) determine a
+/// term.
+template <typename F>
+constexpr int num_active_nodes = F::stencil_size - (is_translation_invariant<F>() ? 1 : 0);
+
+/// Unknowns that determine a term: 9 for a tet, whose energy depends on three edge vectors.
+template <typename F>
+constexpr int num_active_dofs = num_active_nodes<F>* F::node_dim;
+
+}  // namespace supple

@@ -1,0 +1,21 @@
+#include <physics/mass.hpp>
+
+namespace supple {
+
+Vector lumped_mass(const TetMesh& mesh, VectorIn density) {
+  if (density.size() != 1) require_size("density", density.size(), mesh.num_tets());
+  Vector mass = Vector::Zero(mesh.num_nodes());
+  for (Index e = 0; e < mesh.num_tets(); ++e) {
+    const double rho = density.size() == 1 ? density[0] : density[e];
+    require(rho > 0,
+            "density of tet " + std::to_string(e) + " is " + std::to_string(rho) + " kg/m^3, expected > 0");
+    for (const Index v : mesh.tets[e]) mass[v] += rho * tet_volume(mesh, e) / 4;
+  }
+  return mass;
+}
+
+Vector lumped_mass(const TetMesh& mesh, double density) {
+  return lumped_mass(mesh, Vector::Constant(1, density));
+}
+
+}  // namespace supple

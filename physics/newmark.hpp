@@ -1,0 +1,200 @@
+#pragma once
+/// \file Implicit Newmark time integration of any dynamical system.
+
+#include <physics/broyden.hpp>
+#include <physics/dynamical_system.hpp>
+
+#include <algorithm>
+
+namespace supple {
+
+/// Linear Rayleigh damping D = α M + β K(0), with the stiffness at rest.
+struct RayleighDamping {
+  double alpha = 0;  ///< [1/s], damps slow motions
+  double beta = 0;   ///< [s], damps fast ones
+};
+
+/// Displacements u [m], velocities v [m/s], accelerations a [m/s²] of the unknowns at one time [s].
+struct State {
+  Vector u, v, a;
+  double time = 0;
+
+  static State at_rest(Index dim) { return {Vector::Zero(dim), Vector::Zero(dim), Vector::Zero(dim), 0}; }
+};
+
+enum class NonlinearSolver {
+  Newton,   ///< tangent and factorisation at every iteration; for the full system and for violent motions
+  Broyden,  ///< quasi-Newton from the Jacobian at rest, refreshed on demand (the paper's choice); for reduced
+            ///< systems
+};
+
+struct NewmarkOptions {
+  double beta = 0.25, gamma = 0.5;  ///< average acceleration; γ > ½ adds numerical damping, at first order
+  RayleighDamping damping = {};
+  NonlinearSolver solver = NonlinearSolver::Newton;
+  double tolerance =
+      1e-6;  ///< ‖M a + D v + f(u) − f_ext‖ against the largest of these terms, Euclidean norms
+  Index max_iterations = 60;  ///< of the nonlinear solver in a step
+};
+
+/// What a step took. Not converging is reported here and the best iterate kept; the caller decides.
+struct StepReport : Report {
+  Index refreshes = 0;  ///< tangents computed and factorised
+};
+
+/// Advances M ü + D u̇ + f(u) = f_ext by the Newmark family (Newmark 1959; Hughes 2000, Sec. 9.1):
+///   u⁺ = u + h v + h² ((½ − β) a + β a⁺),  v⁺ = v + h ((1 − γ) a + γ a⁺).
+/// A step is the minimiser of an incremental potential, so Newton's line search is safe.
+template <DynamicalSystem System>
+class Newmark {
+ public:
+  using MatrixType = typename System::MatrixType;
+
+  /// \param system  must outlive the integrator.  \param h  time step [s], > 0.
+  Newmark(const System& system, double h, const NewmarkOptions& options = {})
+      : system_(system), h_(h), options_(options), step_(system, h, options) {
+    require(std::isfinite(h) && h > 0, "time step is " + std::to_string(h) + " s, expected > 0");
+    require(options.beta > 0 && options.gamma > 0, "Newmark's beta and gamma have to be > 0 (implicit)");
+  }
+
+  /// The acceleration that u and v imply under this load; call it after setting a state by hand.
+  void balance(const AffineLoad<MatrixType>& load, State& state) const {
+    Vector r(system_.dim());
+    system_.force(state.u, r);
+    if (load.has_stiffness()) r += load.stiffness * state.u;
+    if (damped()) r += step_.damp(state.v);
+    state.a = (load.force - r).cwiseQuotient(system_.mass());
+  }
+
+  /// One time step under a load that is evaluated at its end.
+  StepReport step(const AffineLoad<MatrixType>& load, State& state) {
+    require_size("load.force", load.force.size(), system_.dim());
+    step_.begin(state, load);
+    Vector u = state.u + h_ * state.v + 0.5 * h_ * h_ * state.a;
+    StepReport report;
+    if (options_.solver == NonlinearSolver::Newton) {
+      static_cast<Report&>(report) = newton_minimize(
+          step_, solver_, u, {.tolerance = options_.tolerance, .max_iterations = options_.max_iterations});
+      report.refreshes = report.iterations;
+    } else {
+      prepare_rest_jacobian(load);
+      const BroydenReport broyden = broyden_solve(
+          step_, solver_, u, {.tolerance = options_.tolerance, .max_iterations = options_.max_iterations});
+      static_cast<Report&>(report) = broyden;
+      report.refreshes = broyden.refreshes;
+    }
+    if (report.status == Status::NotFinite) return report;
+    const Vector a = step_.acceleration(u);
+    state.v += h_ * ((1 - options_.gamma) * state.a + options_.gamma * a);
+    state.u = u;
+    state.a = a;
+    state.time += h_;
+    return report;
+  }
+
+  /// Kinetic plus elastic energy [J].
+  double energy(const State& state) const { return kinetic_energy(state) + system_.energy(state.u); }
+  double kinetic_energy(const State& state) const {
+    return 0.5 * state.v.dot(system_.mass().cwiseProduct(state.v));
+  }
+
+ private:
+  /// φ(u) = ½ c_m ‖u − ũ‖²_M + ½ c_d ‖u − ũ‖²_D + ṽᵀ D u + E(u) + ½ uᵀ k u − f_extᵀ u with ∂φ/∂u = M a + D v
+  /// + f − f_ext.
+  class Step {
+   public:
+    using MatrixType = typename System::MatrixType;
+
+    Step(const System& system, double h, const NewmarkOptions& options)
+        : system_(system),
+          h_(h),
+          options_(options),
+          c_m_(1 / (options.beta * h * h)),
+          c_d_(options.gamma / (options.beta * h)) {}
+
+    void begin(const State& state, const AffineLoad<MatrixType>& load) {
+      load_ = &load;
+      u_tilde_ = state.u + h_ * state.v + h_ * h_ * (0.5 - options_.beta) * state.a;
+      v_tilde_ = state.v + h_ * (1 - options_.gamma) * state.a;
+      if (damped()) damping_force_ = damp(v_tilde_);
+    }
+
+    Vector acceleration(VectorIn u) const { return c_m_ * (u - u_tilde_); }
+
+    double value(VectorIn u) const {
+      const Vector du = u - u_tilde_;
+      double phi =
+          0.5 * c_m_ * du.dot(system_.mass().cwiseProduct(du)) + system_.energy(u) - load_->force.dot(u);
+      if (damped()) phi += 0.5 * c_d_ * du.dot(damp(du)) + damping_force_.dot(u);
+      if (load_->has_stiffness()) phi += 0.5 * u.dot(load_->stiffness * u);
+      return phi;
+    }
+
+    void gradient(VectorIn u, VectorOut g) {
+      system_.force(u, g);
+      if (load_->has_stiffness()) g += load_->stiffness * u;
+      scale_ = std::max(g.norm(), load_->force.norm());
+      const Vector inertia = c_m_ * system_.mass().cwiseProduct(u - u_tilde_);
+      scale_ = std::max(scale_, inertia.norm());
+      g += inertia - load_->force;
+      if (damped()) g += damping_force_ + c_d_ * damp(u - u_tilde_);
+    }
+
+    void hessian(VectorIn u, MatrixType& H) const {
+      system_.stiffness(u, H);
+      complete(H, load_->stiffness);
+    }
+    /// Adds what a stiffness lacks of the system matrix.
+    void complete(MatrixType& H, const MatrixType& load_stiffness) const {
+      if (options_.damping.beta != 0) add_scaled(H, c_d_ * options_.damping.beta, system_.rest_stiffness());
+      add_diagonal(H, (c_m_ + c_d_ * options_.damping.alpha) * system_.mass());
+      if (load_stiffness.size() > 0) add_few(H, load_stiffness);
+    }
+
+    double scale(VectorIn) const { return scale_; }
+    const Vector& metric() const { return system_.mass(); }
+
+    Vector damp(VectorIn v) const {
+      Vector result = options_.damping.alpha * system_.mass().cwiseProduct(v);
+      if (options_.damping.beta != 0) result += options_.damping.beta * (system_.rest_stiffness() * v);
+      return result;
+    }
+    bool damped() const { return options_.damping.alpha != 0 || options_.damping.beta != 0; }
+
+   private:
+    const System& system_;
+    double h_;
+    NewmarkOptions options_;
+    double c_m_, c_d_;
+    const AffineLoad<MatrixType>* load_ = nullptr;
+    Vector u_tilde_, v_tilde_, damping_force_;
+    double scale_ = 0;
+  };
+
+  bool damped() const { return step_.damped(); }
+
+  /// The solver starts from the Jacobian at rest, and again when the springs of the load have changed.
+  void prepare_rest_jacobian(const AffineLoad<MatrixType>& load) {
+    if (prepared_ && same(load.stiffness, prepared_stiffness_)) return;
+    MatrixType H;
+    system_.stiffness(Vector::Zero(system_.dim()), H);
+    step_.complete(H, load.stiffness);
+    if (!solver_.factorize(H)) throw SolverError("the system matrix at rest is not positive definite");
+    prepared_stiffness_ = load.stiffness;
+    prepared_ = true;
+  }
+  static bool same(const Matrix& A, const Matrix& B) { return A.size() == B.size() && A == B; }
+  static bool same(const SparseMatrix& A, const SparseMatrix& B) {
+    return A.size() == B.size() && (A.size() == 0 || (A - B).norm() == 0);
+  }
+
+  const System& system_;
+  double h_;
+  NewmarkOptions options_;
+  Step step_;
+  SpdSolver<MatrixType> solver_;
+  MatrixType prepared_stiffness_;
+  bool prepared_ = false;
+};
+
+}  // namespace supple

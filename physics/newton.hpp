@@ -1,0 +1,100 @@
+#pragma once
+/// \file Minimising a smooth function by Newton's method with a safeguarded line search.
+
+#include <core/report.hpp>
+#include <physics/spd_solver.hpp>
+
+#include <cmath>
+#include <concepts>
+
+namespace supple {
+
+/// φ(u) with gradient g and Hessian H. A stationary point is where ‖g‖ is small against `scale(u)`, the size
+/// of the forces that have to cancel there; residuals below are ‖g‖ / scale.
+template <typename O>
+concept SmoothObjective = requires(O& objective, VectorIn u, VectorOut g, typename O::MatrixType& H) {
+  { objective.value(u) } -> std::convertible_to<double>;
+  objective.gradient(u, g);
+  objective.hessian(u, H);
+  { objective.scale(u) } -> std::convertible_to<double>;  // valid for the u of the last call of gradient
+  {
+    objective.metric()
+    } -> std::convertible_to<const Vector&>;  // positive diagonal that makes H definite when added
+};
+
+struct NewtonOptions {
+  double tolerance = 1e-6;    ///< relative residual ‖g‖ / scale to reach
+  Index max_iterations = 50;  ///< raise for extreme load steps; the report says when it was not enough
+};
+
+namespace detail {
+
+inline double relative(double norm, double scale) {
+  return norm == 0 ? 0 : norm / scale;
+}
+
+/// One step from u along −H⁻¹ g, shortened until φ decreases enough (Armijo) unless the full step already
+/// reduces ‖g‖. H is shifted by multiples of the metric until it is positive definite. g is updated to the
+/// new u. Returns false if no decrease was found (u stays).
+template <SmoothObjective O>
+bool newton_step(O& objective, SpdSolver<typename O::MatrixType>& solver, typename O::MatrixType& H,
+                 Vector& u, Vector& g) {
+  objective.hessian(u, H);
+  const Vector& metric = objective.metric();
+  double shift = 0;
+  while (!solver.factorize(H)) {
+    const double more = shift == 0 ? 1e-3 * std::abs(H.diagonal().sum()) / metric.sum() : 9 * shift;
+    if (!std::isfinite(more) || shift > 1e12 * std::abs(more)) return false;
+    add_diagonal(H, more * metric);
+    shift += more;
+  }
+  const Vector step = -solver.solve(g);
+  const double slope = g.dot(step);
+  if (!std::isfinite(slope) || slope >= 0) return false;
+
+  Vector trial = u + step, g_trial(g.size());
+  objective.gradient(trial, g_trial);
+  const double norm = g.norm();
+  if (g_trial.norm() < norm) {  // false for NaN
+    u.swap(trial);
+    g.swap(g_trial);
+    return true;
+  }
+  const double value = objective.value(u);
+  for (double t = 1; t > 1e-10; t *= 0.5) {
+    trial = u + t * step;
+    if (objective.value(trial) <= value + 1e-4 * t * slope) {  // false for NaN
+      u.swap(trial);
+      objective.gradient(u, g);
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace detail
+
+/// Improves u until the residual ‖g‖ / scale is at most the tolerance.
+/// \param solver  is left holding the last factorised Hessian.
+/// \return residual reached; Stagnated when rounding allows no further decrease, NotFinite if the start
+/// already is.
+template <SmoothObjective O>
+Report newton_minimize(O& objective, SpdSolver<typename O::MatrixType>& solver, Vector& u,
+                       const NewtonOptions& options = {}) {
+  typename O::MatrixType H;
+  Vector g(u.size());
+  objective.gradient(u, g);
+  Report report;
+  for (report.iterations = 0;; ++report.iterations) {
+    report.residual = detail::relative(g.norm(), objective.scale(u));
+    if (!std::isfinite(report.residual)) return report.status = Status::NotFinite, report;
+    if (report.residual <= options.tolerance) return report.status = Status::Converged, report;
+    if (report.iterations == options.max_iterations) return report.status = Status::MaxIterations, report;
+    if (!detail::newton_step(objective, solver, H, u, g)) {
+      objective.gradient(u, g);
+      return report.status = Status::Stagnated, report;
+    }
+  }
+}
+
+}  // namespace supple
