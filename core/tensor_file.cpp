@@ -207,6 +207,7 @@ TensorFile::TensorFile(const std::filesystem::path& path, Checksums checksums)
            std::to_string(file.size()));
   const std::string_view head(reinterpret_cast<const char*>(file.data()) + 8, head_size);
   const std::span<const std::byte> data = file.subspan(8 + head_size);
+  if (head.find('\0') != head.npos) refuse("header: not valid JSON");  // the parser would take it for the end
 
   std::set<std::string> names;
   const auto no_duplicates = [&](int depth, Json::parse_event_t event, Json& parsed) {
