@@ -234,16 +234,15 @@ TEST_F(TensorFileTest, DetectsEveryFlippedBit) {
   }
 }
 
-/// A file with any header, whose header checksum is right only if the writer made it.
-std::string with_header(const std::string& bytes, const std::function<void(nlohmann::json&)>& change) {
+/// The file with its header edited, and no checksum repaired.
+std::string with_header(const std::string& bytes, const std::function<void(nlohmann::json&)>& edit) {
   std::uint64_t length;
   std::memcpy(&length, bytes.data(), 8);
   nlohmann::json header = nlohmann::json::parse(bytes.substr(8, length));
-  change(header);
-  const std::string head = header.dump();
+  edit(header);
+  const std::string head = header.dump(), data = bytes.substr(8 + length);
   length = head.size();
-  return std::string(reinterpret_cast<const char*>(&length), 8) + head +
-         bytes.substr(8 + bytes[0] + 256 * bytes[1]);
+  return std::string(reinterpret_cast<const char*>(&length), 8) + head + data;
 }
 
 TEST_F(TensorFileTest, RefusesForeignNewerAndEditedHeaders) {
@@ -266,7 +265,7 @@ TEST_F(TensorFileTest, RefusesForeignNewerAndEditedHeaders) {
                                     header["basis"]["shape"] = {3, 5};
                                   })),
               HasSubstr("header does not match its checksum"));
-  EXPECT_THAT(refusal(std::string("\x12\0\0\0\0\0\0\0{\"a\":{},\"a\":{}}  ", 26)),
+  EXPECT_THAT(refusal(std::string("\x11\0\0\0\0\0\0\0{\"a\":{},\"a\":{}}  ", 25)),
               HasSubstr("'a' appears twice"));
   EXPECT_THAT(refusal(std::string("\xff\xff\xff\xff\xff\xff\xff\x7f{}", 10)),
               HasSubstr("not a safetensors file"));
@@ -275,9 +274,6 @@ TEST_F(TensorFileTest, RefusesForeignNewerAndEditedHeaders) {
 TEST_F(TensorFileTest, SkippingChecksumsOpensADamagedArray) {
   sample().write(path);
   std::string bytes = read_all(path);
-  const auto place =
-      reinterpret_cast<const char*>(TensorFile(path).tensors().find("basis")->second.bytes.data());
-  ASSERT_NE(place, nullptr);
   const double value = basis(4, 2);
   const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&value), 8));
   ASSERT_NE(at, std::string::npos);
