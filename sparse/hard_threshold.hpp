@@ -1,0 +1,17 @@
+#pragma once
+/// \file The projections H_s and H_s⁺ of iterative hard thresholding, as sets of positions.
+
+#include <core/types.hpp>
+
+#include <vector>
+
+namespace supple {
+
+/// Positions of the `count` largest positive entries of x (all positive ones if there are fewer), ascending;
+/// of equal entries the first. The support of H_s⁺(x) (von Tycowicz et al. 2013, Sec. 4.1). O(n).
+std::vector<Index> largest_positive(VectorIn x, Index count);
+
+/// Positions of the `count` entries of largest magnitude that are not zero, ascending: the support of H_s(x).
+std::vector<Index> largest_magnitude(VectorIn x, Index count);
+
+}  // namespace supple

@@ -1,0 +1,49 @@
+#pragma once
+/// \file Non-negative least squares: min ‖A w − b‖ subject to w ≥ 0.
+
+#include <core/report.hpp>
+#include <core/types.hpp>
+#include <sparse/updatable_cholesky.hpp>
+
+#include <span>
+#include <vector>
+
+namespace supple {
+
+/// The columns with a weight, and the factor of their normalised Gram matrix.
+struct PassiveSet {
+  std::vector<Index> indices;  ///< in the factor's order
+  UpdatableCholesky factor;
+  Vector scale;  ///< 1/‖aᵢ‖ of every column (n), 0 for a zero column
+
+  /// x (n) with G_PP x_P = c_P, and 0 elsewhere.
+  Vector solve(VectorIn c) const;
+};
+
+struct NnlsSolution {
+  Vector w;  ///< ≥ 0
+  PassiveSet passive;
+  /// Residual: largest violation of gᵢ ≤ 0, and of gᵢ = 0 where wᵢ > 0, by gᵢ = aᵢᵀ(b − A w) / ‖aᵢ‖; relative
+  /// to maxᵢ |aᵢᵀb| / ‖aᵢ‖. Stagnated: the normal equations have no more digits; w is the best that they
+  /// give.
+  Report report;
+};
+
+/// Active-set method on the normal equations: block exchanges while they make progress (usually a handful),
+/// then one column at a time, with the Cholesky factor of the passive set updated. A column that depends
+/// linearly on the passive ones stays out, which costs nothing: its gradient is zero. So copies of a column,
+/// zero columns and singular Gram matrices are nothing special. Columns are normalised inside, so their
+/// scales do not matter. Accuracy: KKT to about ε cond(A_P)², ε = 2e-16; see Nnls for matrices worse than
+/// that. \see Bro & De Jong 1997 (normal equations); Kim & Park 2011 (block exchanges); Lawson & Hanson 1974,
+/// Ch. 23.
+struct Fnnls {
+  double tolerance = 1e-12;  ///< of the KKT residual
+  Index max_iterations = 0;  ///< exchanges; 0: 3 n + 30, which only a very degenerate problem needs
+
+  /// \param gram     G = AᵀA (n × n).   \param atb  Aᵀb (n).
+  /// \param passive  columns to start from, such as the answer to a similar problem; may be empty.
+  /// \throws std::invalid_argument if sizes do not fit. \note O(n²) an exchange, and O(|passive|³) once.
+  NnlsSolution operator()(MatrixIn gram, VectorIn atb, std::span<const Index> passive = {}) const;
+};
+
+}  // namespace supple

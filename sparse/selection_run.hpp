@@ -1,0 +1,220 @@
+#pragma once
+/// \file What all selectors do alike: check the request, evaluate columns, keep the best iterate, account for
+/// it all.
+
+#include <core/random.hpp>
+#include <core/stopwatch.hpp>
+#include <sparse/subset_selector.hpp>
+#include <sparse/working_set.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace supple {
+
+/// A request, checked against a problem: who may be chosen, who must be, and how many.
+class SelectionRules {
+ public:
+  /// \throws std::invalid_argument if the request makes no sense for A with `cols` columns; InputError if b
+  /// is not finite.
+  SelectionRules(const SelectionRequest& request, Index cols, const Vector& b);
+
+  Index size() const { return size_; }  ///< s, at most the number of eligible columns
+  const std::vector<Index>& eligible() const { return eligible_; }  ///< candidates and must-keep, ascending
+  const std::vector<Index>& must_keep() const { return must_keep_; }
+  bool must_keep(Index j) const { return role_[j] == Role::MustKeep; }
+  std::vector<Index> eligible_without(const std::vector<Index>& indices) const;
+  /// Must-keep and what is eligible of the warm start, its largest weights if there are too many; ascending.
+  const std::vector<Index>& start() const { return start_; }
+
+ private:
+  enum class Role : char { Excluded, Candidate, MustKeep };
+
+  Index size_;
+  std::vector<Role> role_;
+  std::vector<Index> eligible_, must_keep_, start_;
+};
+
+/// Evaluated columns and their norms ‖a_j‖.
+template <FittingProblem P>
+struct Evaluated {
+  ColumnsOf<P> block;
+  Vector norms;
+};
+
+/// −∇f restricted to what is more than rounding: g where g > 1e-13 ‖a_j‖ ‖b‖ and 0 elsewhere, g = c_j a_jᵀ r.
+inline Vector significant(const Vector& g, const Vector& norms, double b_norm) {
+  return (g.array() > 1e-13 * b_norm * norms.array()).select(g, 0.0);
+}
+
+/// Ascending positions of a joined vector, as those of its first part and those of its second.
+inline std::pair<std::vector<Index>, std::vector<Index>> split_at(Index first_size,
+                                                                  const std::vector<Index>& positions) {
+  std::pair<std::vector<Index>, std::vector<Index>> parts;
+  for (Index k : positions)
+    k < first_size ? parts.first.push_back(k) : parts.second.push_back(k - first_size);
+  return parts;
+}
+
+inline std::vector<Index> sorted_union(std::vector<Index> a, const std::vector<Index>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  std::sort(a.begin(), a.end());
+  return a;
+}
+
+enum class FinalWeights { Refitted, AsTheyAre };
+
+/// One run of a selector on a problem.
+template <FittingProblem P>
+class SelectionRun {
+ public:
+  SelectionRun(const P& problem, const SelectionRequest& request)
+      : rules(request, problem.cols(), problem.rhs()),
+        problem_(problem),
+        request_(request),
+        b_norm_(problem.rhs().norm()) {}
+
+  const SelectionRules rules;
+
+  double b_norm() const { return b_norm_; }
+  double error() const { return error_; }  ///< of the best iterate so far
+  bool met(double tolerance) const { return error_ <= std::max(tolerance, request_.target_error); }
+
+  /// \throws InputError naming the column if one is not finite.
+  Evaluated<P> evaluate(const std::vector<Index>& js) {
+    columns_evaluated_ += static_cast<Index>(js.size());
+    ColumnsOf<P> block = columns_of(problem_, std::span<const Index>(js));
+    Vector norms = block.squared_norms().cwiseSqrt();
+    for (Index k = 0; k < norms.size(); ++k)
+      if (!std::isfinite(norms[k]))
+        throw InputError("column " + std::to_string(js[k]) +
+                         " of A has a norm that is not finite, expected finite numbers below 1e150");
+    return {std::move(block), std::move(norms)};
+  }
+
+  /// The working set to begin with: must-keep and warm start.
+  WorkingSet<P> start() {
+    WorkingSet<P> working(problem_);
+    working.append(evaluate(rules.start()).block);
+    return working;
+  }
+
+  /// Drops the columns that have no weight, unless they must be kept; w shrinks with the working set.
+  void drop_unused(WorkingSet<P>& working, Vector& w) const {
+    const std::vector<Index> used = used_positions(working, w);
+    if (static_cast<Index>(used.size()) == working.size()) return;
+    working.keep(used);
+    w = Vector(w(used));
+  }
+
+  /// Enters the iterate w on the working set into the history and keeps it if it is the best.
+  /// \return its residual b − A w.
+  Vector record(const WorkingSet<P>& working, const Vector& w) {
+    const Vector r = working.residual(w);
+    const double error = relative(r.norm());
+    const std::vector<Index> used = used_positions(working, w);
+    std::vector<Index> indices = indices_at(working.block(), used);
+    SelectionStep step;
+    step.size = static_cast<Index>(used.size());
+    step.training_error = error;
+    if (request_.validate) step.held_out_error = request_.validate(indices, w(used));
+    step.seconds = stopwatch_.seconds();
+    step.columns_evaluated = columns_evaluated_;
+    history_.push_back(step);
+    if (error < error_ || history_.size() == 1) {
+      error_ = error;
+      best_indices_ = std::move(indices);
+      best_weights_ = w(used);
+    }
+    return r;
+  }
+
+  void tell(Index iteration, Index iterations) const {
+    supple::tell(request_.progress, "selecting components",
+                 std::min(1.0, static_cast<double>(iteration) / static_cast<double>(iterations)));
+  }
+
+  /// The best iterate, and its residual as A, w and b themselves have it.
+  Selection finish(WorkingSet<P>& working, FinalWeights weights, Status status, Index iterations,
+                   std::string stop_reason) {
+    Vector w = restore_best(working);
+    if (weights == FinalWeights::Refitted) {
+      NnlsSolution refitted = working.fit(used_positions(working, w));
+      working.polish(refitted);
+      if (working.residual(refitted.w).norm() <= working.residual(w).norm()) w = std::move(refitted.w);
+      drop_unused(working, w);
+    }
+    const Vector r = working.residual(w);
+    Selection selection{working.indices(), std::move(w), {}};
+    SelectionReport& report = selection.report;
+    report.status = status;
+    report.iterations = iterations;
+    report.residual = r.norm();
+    report.training_error = relative(report.residual);
+    report.kkt_residual = kkt_residual(working, selection.weights, r);
+    report.columns_evaluated = columns_evaluated_;
+    report.stop_reason = std::move(stop_reason);
+    report.history = std::move(history_);
+    report.seconds = stopwatch_.seconds();
+    return selection;
+  }
+
+ private:
+  double relative(double residual) const { return residual > 0 ? residual / b_norm_ : 0; }
+
+  std::vector<Index> used_positions(const WorkingSet<P>& working, const Vector& w) const {
+    std::vector<Index> used;
+    for (Index k = 0; k < w.size(); ++k)
+      if (w[k] > 0 || rules.must_keep(working.block().index(k))) used.push_back(k);
+    return used;
+  }
+
+  // Makes `working` hold the best iterate, ascending; what has left it meanwhile is evaluated again.
+  Vector restore_best(WorkingSet<P>& working) {
+    if (history_.empty()) {
+      best_indices_ = rules.must_keep();
+      best_weights_ = Vector::Zero(static_cast<Index>(best_indices_.size()));
+    }
+    std::vector<Index> order = all_positions(static_cast<Index>(best_indices_.size()));
+    std::sort(order.begin(), order.end(),
+              [&](Index k, Index l) { return best_indices_[k] < best_indices_[l]; });
+    best_weights_ = Vector(best_weights_(order));
+    std::sort(best_indices_.begin(), best_indices_.end());
+
+    const std::vector<Index> present = working.indices();
+    std::vector<Index> missing, positions;
+    for (Index j : best_indices_)
+      if (std::find(present.begin(), present.end(), j) == present.end()) missing.push_back(j);
+    working.append(evaluate(missing).block);
+    const std::vector<Index> all = working.indices();
+    for (Index j : best_indices_) positions.push_back(std::find(all.begin(), all.end(), j) - all.begin());
+    working.keep(positions);
+    return best_weights_;
+  }
+
+  double kkt_residual(const WorkingSet<P>& working, const Vector& w, const Vector& r) const {
+    if (w.size() == 0 || b_norm_ == 0) return 0;
+    const Vector g = working.block().transpose_times(r);
+    double worst = 0;
+    for (Index k = 0; k < g.size(); ++k)
+      if (working.gram()(k, k) > 0)
+        worst = std::max(worst, (w[k] > 0 ? std::abs(g[k]) : g[k]) / std::sqrt(working.gram()(k, k)));
+    return worst / b_norm_;
+  }
+
+  const P& problem_;
+  const SelectionRequest& request_;
+  const double b_norm_;
+  const Stopwatch stopwatch_;
+  Index columns_evaluated_ = 0;
+  std::vector<SelectionStep> history_;
+  double error_ = 1;
+  std::vector<Index> best_indices_;
+  Vector best_weights_;
+};
+
+}  // namespace supple
