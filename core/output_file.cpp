@@ -1,6 +1,7 @@
 #include <core/check.hpp>
 #include <core/output_file.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -69,6 +70,24 @@ void write_file(const std::filesystem::path& path, std::string_view content) {
   OutputFile file(path);
   file.write(content);
   file.commit();
+}
+
+std::string read_file(const std::filesystem::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  std::string content;
+  ssize_t count = descriptor < 0 ? -1 : 0;
+  for (std::size_t size = 0; descriptor >= 0; size += static_cast<std::size_t>(count)) {
+    content.resize(size + std::max<std::size_t>(size / 2, 1 << 16));
+    do count = ::read(descriptor, content.data() + size, content.size() - size);
+    while (count < 0 && errno == EINTR);
+    if (count > 0) continue;
+    content.resize(size);
+    break;
+  }
+  const int error = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (count < 0) throw InputError(path.string() + ": cannot be read: " + std::strerror(error));
+  return content;
 }
 
 }  // namespace supple

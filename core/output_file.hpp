@@ -1,9 +1,10 @@
 #pragma once
-/// \file A file that appears whole or not at all.
+/// \file Whole files: one that appears completely or not at all, and one read at once.
 
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace supple {
@@ -30,7 +31,10 @@ class OutputFile {
   int descriptor_ = -1;
 };
 
-/// The whole content at once.
+/// OutputFile for content that is there at once.
 void write_file(const std::filesystem::path& path, std::string_view content);
+
+/// All bytes of a file. \throws InputError naming the file and the system's reason.
+std::string read_file(const std::filesystem::path& path);
 
 }  // namespace supple

@@ -65,6 +65,17 @@ TEST_F(OutputFileTest, FollowsSymbolicLinks) {
   EXPECT_EQ(content(), "new");
 }
 
+TEST_F(OutputFileTest, LargeFilesAreReadBackWhole) {
+  std::string large(1'000'003, '\0');
+  for (std::size_t k = 0; k < large.size(); ++k) large[k] = static_cast<char>(k * k % 251);
+  for (const std::string& text : {std::string(), std::string(1 << 16, 'x'), large}) {
+    write_file(path, text);
+    EXPECT_EQ(read_file(path), text);
+  }
+  EXPECT_THAT([&] { read_file(folder); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("Is a directory")));
+}
+
 TEST_F(OutputFileTest, SaysWhyAFileCannotBeWritten) {
   using testing::HasSubstr;
   using testing::ThrowsMessage;
