@@ -4,7 +4,6 @@
 #include <core/tensor_file.hpp>
 
 #include <nlohmann/json.hpp>
-#define XXH_INLINE_ALL
 #include <xxhash.h>
 
 #include <algorithm>

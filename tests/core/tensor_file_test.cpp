@@ -53,6 +53,7 @@ struct TensorFileTest : testing::Test {
 
   /// The message of opening `bytes` as a file, or "" if it opens.
   std::string refusal(const std::string& bytes, Checksums checksums = Checksums::Verify) const {
+    fs::remove(folder / "changed");  // truncating a file instead makes some file systems wait for the disk
     write_all(folder / "changed", bytes);
     try {
       TensorFile(folder / "changed", checksums);
