@@ -9,7 +9,7 @@ namespace supple {
 
 namespace {
 
-std::string quoted(const std::string& cell) {
+std::string csv_cell(const std::string& cell) {
   const bool plain = cell.find_first_of(",\"\r\n") == cell.npos &&
                      (cell.empty() || (cell.front() != ' ' && cell.back() != ' '));
   if (plain) return cell;
@@ -132,10 +132,10 @@ std::vector<std::string> CsvTable::texts(std::string_view name) const {
 void write_csv(const std::filesystem::path& path, const CsvTable& table) {
   std::string text;
   for (const CsvTable::Column& column : table.columns_)
-    text += quoted(column.unit.empty() ? column.name : column.name + " [" + column.unit + "]") + ',';
+    text += csv_cell(column.unit.empty() ? column.name : column.name + " [" + column.unit + "]") + ',';
   text.back() = '\n';
   for (const auto& row : table.rows_) {
-    for (const std::string& cell : row) text += quoted(cell) + ',';
+    for (const std::string& cell : row) text += csv_cell(cell) + ',';
     text.back() = '\n';
   }
   write_file(path, text);
