@@ -1,11 +1,15 @@
-# SuiteSparse 5 ships no CMake configuration. Defines CHOLMOD::CHOLMOD.
+# SuiteSparse 5 ships no CMake configuration. Defines CHOLMOD::CHOLMOD, with the LAPACK and BLAS it stands on.
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
 find_library(CHOLMOD_LIBRARY cholmod)
+find_library(CHOLMOD_LAPACK_LIBRARY NAMES lapack openblas)
+find_library(CHOLMOD_BLAS_LIBRARY NAMES blas openblas)
 include(FindPackageHandleStandardArgs)
-find_package_handle_standard_args(CHOLMOD REQUIRED_VARS CHOLMOD_LIBRARY CHOLMOD_INCLUDE_DIR)
+find_package_handle_standard_args(CHOLMOD
+  REQUIRED_VARS CHOLMOD_LIBRARY CHOLMOD_LAPACK_LIBRARY CHOLMOD_BLAS_LIBRARY CHOLMOD_INCLUDE_DIR)
 if(CHOLMOD_FOUND AND NOT TARGET CHOLMOD::CHOLMOD)
   add_library(CHOLMOD::CHOLMOD INTERFACE IMPORTED)
   target_include_directories(CHOLMOD::CHOLMOD SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
-  target_link_libraries(CHOLMOD::CHOLMOD INTERFACE ${CHOLMOD_LIBRARY})
+  target_link_libraries(CHOLMOD::CHOLMOD INTERFACE
+    ${CHOLMOD_LIBRARY} ${CHOLMOD_LAPACK_LIBRARY} ${CHOLMOD_BLAS_LIBRARY})
 endif()
-mark_as_advanced(CHOLMOD_INCLUDE_DIR CHOLMOD_LIBRARY)
+mark_as_advanced(CHOLMOD_INCLUDE_DIR CHOLMOD_LIBRARY CHOLMOD_LAPACK_LIBRARY CHOLMOD_BLAS_LIBRARY)

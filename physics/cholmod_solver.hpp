@@ -1,5 +1,5 @@
 #pragma once
-/// \file Sparse Cholesky factorisation and solves (CHOLMOD behind it).
+/// \file Sparse Cholesky factorisation and solves.
 
 #include <core/types.hpp>
 
@@ -8,18 +8,21 @@
 namespace supple {
 
 /// Solves A x = b for a sparse, symmetric positive definite A by a supernodal factorisation P A Pᵀ = L Lᵀ.
-/// Both triangles of A are stored, the lower one is read. Analyse once, factorise for every new set of
-/// values:
+/// CHOLMOD and METIS find P and the pattern of L; the numbers are computed along the elimination tree in
+/// parallel. Both triangles of A are stored, the lower one is read. Analyse once, factorise for every new set
+/// of values:
 ///
 ///     CholmodSolver cholesky;
-///     cholesky.analyze(K, 3);
+///     cholesky.analyze(K);
 ///     if (!cholesky.factorize(K)) …  // not positive definite
 ///     const Vector x = cholesky.solve(b);
 ///
-/// Factor and solutions have the same bits for any num_threads(): BLAS runs on one thread during these calls,
-/// and threads come in only where the pieces are fixed beforehand. Const calls are safe from several threads.
-/// \throws SolverError from analyze and factorize if memory runs out or the factor has 2³¹ entries or more.
-/// \see Chen, Davis, Hager & Rajamanickam 2008 (CHOLMOD); Karypis & Kumar 1998 (METIS).
+/// Factor and solutions have the same bits for any num_threads(): BLAS is held to one thread while
+/// factorising, and threads share out subtrees and tiles that the pattern fixes. Const calls are safe from
+/// several threads. \throws SolverError if memory runs out, or from analyze if the factor has 2³¹ entries or
+/// more. \see Chen, Davis, Hager & Rajamanickam 2008 (CHOLMOD); Karypis & Kumar 1998 (METIS); Duff & Reid
+/// 1983
+///      (multifrontal factorisation).
 class CholmodSolver {
  public:
   CholmodSolver();
@@ -28,12 +31,13 @@ class CholmodSolver {
   CholmodSolver& operator=(CholmodSolver&&) noexcept;
 
   /// Orders A to keep L sparse and computes L's pattern; reads the pattern of A only.
-  /// \param block_size  rows b i … b i + b − 1 belong to node i, which is then ordered as a whole: several
-  /// times
-  ///                    cheaper than ordering single rows, and as good if these blocks are dense. Divides
-  ///                    A.rows().
-  /// \throws std::invalid_argument if A is not square or block_size does not divide its size.
-  void analyze(const SparseMatrix& A, Index block_size = 1);
+  /// \param block_size  rows b i … b i + b − 1 belong to node i, which is ordered as a whole: several times
+  /// cheaper
+  ///                    than ordering single rows. 0: consecutive rows with equal patterns make a node, which
+  ///                    finds the nodes of a mesh by itself.
+  /// \throws std::invalid_argument if A is not square, empty or not compressed, or block_size does not divide
+  /// its size.
+  void analyze(const SparseMatrix& A, Index block_size = 0);
 
   /// Computes L; false if A is not positive definite (or not finite), and then there is nothing to solve
   /// with. \throws std::invalid_argument if A has another pattern than the one analysed.
