@@ -25,26 +25,31 @@ Vector squared_norms(const Eigen::Ref<const Matrix>& A) {
   return result;
 }
 
-// Both triangles from one: tile pairs on and above the diagonal.
-Matrix symmetric_gram(const Eigen::Ref<const Matrix>& A) {
-  const Index n = A.cols(), tiles = (n + tile - 1) / tile;
-  std::vector<std::pair<Index, Index>> pairs;
-  for (Index q = 0; q < tiles; ++q)
-    for (Index p = 0; p <= q; ++p) pairs.emplace_back(p * tile, q * tile);
+// Aᵀ A of columns that piece(begin, end) gives, both triangles from one: tile pairs on and above the
+// diagonal.
+template <typename Piece>
+Matrix symmetric_gram(Index n, const Piece& piece) {
   Matrix G(n, n);
-  parallel_for(static_cast<Index>(pairs.size()), [&](Index k) {
-    const auto [i, j] = pairs[k];
-    const Index height = std::min(tile, n - i), width = std::min(tile, n - j);
-    G.block(i, j, height, width).noalias() = A.middleCols(i, height).transpose() * A.middleCols(j, width);
+  parallel_for((n + tile - 1) / tile, [&](Index q) {
+    const Index j = q * tile, width = std::min(tile, n - j);
+    const auto right = piece(j, j + width);
+    for (Index i = 0; i < j; i += tile)
+      G.block(i, j, tile, width).noalias() = piece(i, i + tile).transpose() * right;
+    G.block(j, j, width, width).noalias() = right.transpose() * right;
   });
   G.triangularView<Eigen::StrictlyLower>() = G.transpose();
   return G;
 }
 
-Matrix gram(const Eigen::Ref<const Matrix>& A, const Eigen::Ref<const Matrix>& B) {
-  Matrix G(A.cols(), B.cols());
-  parallel_ranges(A.cols(), tile, [&](Index begin, Index end) {
-    G.middleRows(begin, end - begin).noalias() = A.middleCols(begin, end - begin).transpose() * B;
+// Aᵀ B, the wider of the two in tiles.
+template <typename PieceOfA, typename PieceOfB>
+Matrix gram(Index m, const PieceOfA& a, Index n, const PieceOfB& b) {
+  Matrix G(m, n);
+  const Index tiles_a = (m + tile - 1) / tile, tiles_b = (n + tile - 1) / tile;
+  parallel_for(tiles_a * tiles_b, [&](Index k) {
+    const Index i = k % tiles_a * tile, j = k / tiles_a * tile;
+    const Index height = std::min(tile, m - i), width = std::min(tile, n - j);
+    G.block(i, j, height, width).noalias() = a(i, i + height).transpose() * b(j, j + width);
   });
   return G;
 }
@@ -65,7 +70,10 @@ Vector DenseColumns::transpose_times(VectorIn r) const {
 }
 
 Matrix DenseColumns::gram(const DenseColumns& other) const {
-  return this == &other ? symmetric_gram(values()) : supple::gram(values(), other.values());
+  const auto piece = [this](Index begin, Index end) { return storage_.middleCols(begin, end - begin); };
+  if (this == &other) return symmetric_gram(size(), piece);
+  return supple::gram(size(), piece, other.size(),
+                      [&](Index begin, Index end) { return other.storage_.middleCols(begin, end - begin); });
 }
 
 Vector DenseColumns::squared_norms() const {
@@ -88,18 +96,58 @@ void DenseColumns::append(const DenseColumns& other) {
   indices_.insert(indices_.end(), other.indices_.begin(), other.indices_.end());
 }
 
+Vector GatheredColumns::times(VectorIn w) const {
+  require_size("w", w.size(), size());
+  Vector sum = Vector::Zero(A_->rows());
+  for (Index k = 0; k < size(); ++k) sum += w[k] * A_->col(indices_[k]);
+  return sum;
+}
+
+Vector GatheredColumns::transpose_times(VectorIn r) const {
+  Vector result(size());
+  parallel_ranges(size(), tile, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) result[k] = A_->col(indices_[k]).dot(r);
+  });
+  return result;
+}
+
+Matrix GatheredColumns::gathered(Index begin, Index end) const {
+  Matrix columns(A_->rows(), end - begin);
+  for (Index k = begin; k < end; ++k) columns.col(k - begin) = A_->col(indices_[k]);
+  return columns;
+}
+
+Matrix GatheredColumns::gram(const GatheredColumns& other) const {
+  const auto piece = [this](Index begin, Index end) { return gathered(begin, end); };
+  if (this == &other) return symmetric_gram(size(), piece);
+  return supple::gram(size(), piece, other.size(),
+                      [&](Index begin, Index end) { return other.gathered(begin, end); });
+}
+
+Vector GatheredColumns::squared_norms() const {
+  Vector result(size());
+  parallel_ranges(size(), tile, [&](Index begin, Index end) {
+    for (Index k = begin; k < end; ++k) result[k] = A_->col(indices_[k]).squaredNorm();
+  });
+  return result;
+}
+
+GatheredColumns GatheredColumns::subset(std::span<const Index> positions) const {
+  std::vector<Index> indices;
+  for (Index k : positions) indices.push_back(indices_[k]);
+  return {std::move(indices), *A_};
+}
+
+void GatheredColumns::append(const GatheredColumns& other) {
+  indices_.insert(indices_.end(), other.indices_.begin(), other.indices_.end());
+}
+
 DenseProblem::DenseProblem(Matrix A, Vector b, Index group_size)
     : A_(std::move(A)), b_(std::move(b)), group_size_(group_size) {
   require_size("b", b_.size(), A_.rows());
   require(group_size_ >= 1 && A_.rows() % group_size_ == 0,
           "A has " + std::to_string(A_.rows()) +
               " rows, expected a multiple of group_size = " + std::to_string(group_size_));
-}
-
-DenseColumns DenseProblem::columns(std::span<const Index> js) const {
-  Matrix columns(rows(), static_cast<Index>(js.size()));
-  for (Index k = 0; k < columns.cols(); ++k) columns.col(k) = A_.col(js[k]);
-  return {{js.begin(), js.end()}, std::move(columns)};
 }
 
 Vector DenseProblem::transpose_times(VectorIn r) const {

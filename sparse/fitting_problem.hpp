@@ -24,7 +24,8 @@ concept FittingProblem = requires(const P& p, Index j, VectorOut out) {
 
 /// Evaluated columns A_C of a problem, in whatever representation is cheap: all that a selector does with
 /// them. A block also promises: results agree with those of the columns themselves to rounding, and do not
-/// depend on the number of threads; the columns keep the order in which they were asked for.
+/// depend on the number of threads; the columns keep the order in which they were asked for. It may refer to
+/// its problem, which must outlive it.
 template <typename C>
 concept ColumnBlock = std::movable<C> &&
     requires(const C& c, C& grown, VectorIn v, Index k, std::span<const Index> positions) {
@@ -85,6 +86,28 @@ class DenseColumns {
 };
 static_assert(ColumnBlock<DenseColumns>);
 
+/// Columns of a matrix that is in memory anyway: their numbers and a reference to it. Products gather them.
+class GatheredColumns {
+ public:
+  GatheredColumns(std::vector<Index> indices, const Matrix& A) : indices_(std::move(indices)), A_(&A) {}
+
+  Index size() const { return static_cast<Index>(indices_.size()); }
+  Index index(Index k) const { return indices_[k]; }
+  Vector times(VectorIn w) const;
+  Vector transpose_times(VectorIn r) const;
+  Matrix gram(const GatheredColumns& other) const;
+  Vector squared_norms() const;
+  GatheredColumns subset(std::span<const Index> positions) const;
+  void append(const GatheredColumns& other);
+
+ private:
+  Matrix gathered(Index begin, Index end) const;
+
+  std::vector<Index> indices_;
+  const Matrix* A_;
+};
+static_assert(ColumnBlock<GatheredColumns>);
+
 /// A and b in memory. Rows may be grouped: group_size consecutive rows stand or fall together.
 class DenseProblem {
  public:
@@ -96,11 +119,11 @@ class DenseProblem {
   const Matrix& matrix() const { return A_; }
   const Vector& rhs() const { return b_; }
   void column(Index j, VectorOut out) const { out = A_.col(j); }
-  DenseColumns columns(std::span<const Index> js) const;
+  GatheredColumns columns(std::span<const Index> js) const { return {{js.begin(), js.end()}, A_}; }
   Vector transpose_times(VectorIn r) const;
   Vector squared_norms() const;
   Index num_groups() const { return rows() / group_size_; }
-  DenseProblem restricted_to(std::span<const Index> groups) const;
+  DenseProblem restricted_to(std::span<const Index> groups) const;  ///< a copy
 
  private:
   Matrix A_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace supple {
 
@@ -41,8 +42,7 @@ struct Fit {
     G = passive.scale.asDiagonal() * gram * passive.scale.asDiagonal();
     c = atb.cwiseProduct(passive.scale);
     scale_of_c = c.size() ? c.cwiseAbs().maxCoeff() : 0;
-    for (Index i : start)
-      if (!in_set[i]) add(i);
+    set_passive({start.begin(), start.end()});
   }
 
   Index size() const { return c.size(); }
@@ -55,6 +55,19 @@ struct Fit {
     passive.indices.push_back(i);
     in_set[i] = 1;
     return true;
+  }
+
+  // Makes exactly these columns passive, but for those that depend on the others.
+  void set_passive(std::vector<Index> indices) {
+    std::fill(in_set.begin(), in_set.end(), 0);
+    std::erase_if(indices, [&](Index i) { return blocked[i] == zero_column || std::exchange(in_set[i], 1); });
+    if (passive.factor.assign(G(indices, indices))) {
+      passive.indices = std::move(indices);
+      return;
+    }
+    std::fill(in_set.begin(), in_set.end(), 0);
+    passive.indices.clear();
+    for (Index i : indices) add(i);
   }
 
   void remove_at(Index k) {
@@ -103,6 +116,22 @@ struct Fit {
     update_gradient();
   }
 
+  // Negative ones out, `entering` in: by updates of the factor if they are few, else from scratch.
+  void exchange(const std::vector<Index>& entering) {
+    const auto leaves = [&](Index i) { return x[i] < 0; };
+    const auto leaving = std::count_if(passive.indices.begin(), passive.indices.end(), leaves);
+    if (8 * (leaving + static_cast<Index>(entering.size())) < passive.factor.size()) {
+      remove_if(leaves);
+      for (Index i : entering) add(i);
+      return;
+    }
+    std::vector<Index> indices = passive.indices;
+    std::erase_if(indices, leaves);
+    for (char& b : blocked) b = b == zero_column ? zero_column : 0;
+    indices.insert(indices.end(), entering.begin(), entering.end());
+    set_passive(std::move(indices));
+  }
+
   // Kim & Park: exchange all that violate, as long as they get fewer, or for three more rounds. True if
   // optimal.
   bool exchange_blocks(double tolerance, Index& iterations, Index max_iterations) {
@@ -125,8 +154,7 @@ struct Fit {
         return false;
       }
       ++iterations;
-      remove_if([&](Index i) { return x[i] < 0; });
-      for (Index i : entering) add(i);
+      exchange(entering);
     }
     return false;
   }

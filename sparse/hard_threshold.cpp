@@ -21,4 +21,15 @@ std::vector<Index> largest_magnitude(VectorIn x, Index count) {
   return largest_positive(x.cwiseAbs(), count);
 }
 
+std::vector<Index> best_of_groups(VectorIn x, Index groups) {
+  std::vector<Index> positions;
+  groups = std::min(groups, x.size());
+  for (Index k = 0; k < groups; ++k) {
+    const Index begin = k * x.size() / groups, end = (k + 1) * x.size() / groups;
+    Index best = 0;
+    if (x.segment(begin, end - begin).maxCoeff(&best) > 0) positions.push_back(begin + best);
+  }
+  return positions;
+}
+
 }  // namespace supple

@@ -14,4 +14,8 @@ std::vector<Index> largest_positive(VectorIn x, Index count);
 /// Positions of the `count` entries of largest magnitude that are not zero, ascending: the support of H_s(x).
 std::vector<Index> largest_magnitude(VectorIn x, Index count);
 
+/// The position of the largest positive entry in each of `groups` consecutive parts of x, as equal as can be;
+/// parts without a positive entry have none. Ascending. More groups than entries: one entry each.
+std::vector<Index> best_of_groups(VectorIn x, Index groups);
+
 }  // namespace supple

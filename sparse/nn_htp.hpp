@@ -35,9 +35,7 @@ struct NnHtp {
   Selection operator()(const P& problem, const SelectionRequest& request) const {
     require(candidates_per_size > 0, "candidates_per_size is not positive, expected about 5");
     SelectionRun<P> run(problem, request);
-    const Index s = run.rules.size();
-    const auto c =
-        static_cast<Index>(std::min(1e15, std::ceil(candidates_per_size * static_cast<double>(s))));
+    const Index s = run.rules.size(), c = share(candidates_per_size, s);
     Random random(seed);
 
     WorkingSet<P> X = run.start();
@@ -48,7 +46,7 @@ struct NnHtp {
     Index iterations = 0, unchanged = 0;
     std::vector<Index> previous;
     const auto finish = [&](Status status, const char* reason) {
-      return run.finish(X, FinalWeights::Refitted, status, iterations, reason);
+      return run.finish(X, FinalWeights::NonNegative, status, iterations, reason);
     };
     for (; iterations < max_iterations; ++iterations) {
       if (run.met(tolerance)) return finish(Status::Converged, "target error reached");
@@ -56,12 +54,12 @@ struct NnHtp {
 
       const std::vector<Index> rest = run.rules.eligible_without(X.indices());
       const Evaluated<P> drawn = run.evaluate(random.sample(rest, c));
-      const Vector g_drawn = -2 * drawn.block.transpose_times(r);
-      const std::vector<Index> entering =
-          largest_positive(significant(-g_drawn, drawn.norms, run.b_norm()), s);
+      const Vector descent =
+          improving(drawn.block.transpose_times(r), drawn.norms, run.b_norm()).correlations;
+      const std::vector<Index> entering = largest_positive(descent, s);
       const ColumnsOf<P> fresh = drawn.block.subset(entering);  // S = X ∪ fresh, Eq. 8
 
-      const Vector g_X = -2 * X.block().transpose_times(r), g_fresh = g_drawn(entering);
+      const Vector g_X = -2 * X.block().transpose_times(r), g_fresh = -2 * descent(entering);
       const Vector A_g = X.block().times(g_X) + fresh.times(g_fresh);
       const double mu =
           step_factor(step) * (g_X.squaredNorm() + g_fresh.squaredNorm()) / A_g.squaredNorm();  // Eq. 9
@@ -85,7 +83,7 @@ struct NnHtp {
       previous = next;
       X.keep(kept);
       X.append(fresh.subset(chosen));
-      w = X.fit(all_positions(X.size())).w;  // Eq. 10 with w ≥ 0
+      w = X.fit_on(all_positions(X.size()));  // Eq. 10 with w ≥ 0
       r = run.record(X, w);
       run.drop_unused(X, w);
     }

@@ -46,9 +46,20 @@ struct Evaluated {
   Vector norms;
 };
 
-/// −∇f restricted to what is more than rounding: g where g > 1e-13 ‖a_j‖ ‖b‖ and 0 elsewhere, g = c_j a_jᵀ r.
-inline Vector significant(const Vector& g, const Vector& norms, double b_norm) {
-  return (g.array() > 1e-13 * b_norm * norms.array()).select(g, 0.0);
+/// Correlations g_j = a_jᵀ r of columns with a residual, 0 where they are not positive by more than rounding:
+/// after an exact fit only rounding is left, and it must not choose columns.
+struct Improving {
+  Vector correlations;  ///< g_j
+  Vector cosines;       ///< g_j / ‖a_j‖
+};
+inline Improving improving(const Vector& g, const Vector& norms, double b_norm) {
+  const Eigen::Array<bool, Eigen::Dynamic, 1> matter = g.array() > 1e-13 * b_norm * norms.array();
+  return {matter.select(g, 0), matter.select(g.cwiseQuotient(norms), 0)};
+}
+
+/// factor · s, rounded up.
+inline Index share(double factor, Index s) {
+  return static_cast<Index>(std::min(1e15, std::ceil(factor * static_cast<double>(s))));
 }
 
 /// Ascending positions of a joined vector, as those of its first part and those of its second.
@@ -66,7 +77,9 @@ inline std::vector<Index> sorted_union(std::vector<Index> a, const std::vector<I
   return a;
 }
 
-enum class FinalWeights { Refitted, AsTheyAre };
+/// What finish() does with the weights of the best iterate: least squares once more, polished, with or
+/// without signs.
+enum class FinalWeights { NonNegative, Signed, AsTheyAre };
 
 /// One run of a selector on a problem.
 template <FittingProblem P>
@@ -82,7 +95,7 @@ class SelectionRun {
 
   double b_norm() const { return b_norm_; }
   double error() const { return error_; }  ///< of the best iterate so far
-  bool met(double tolerance) const { return error_ <= std::max(tolerance, request_.target_error); }
+  bool met(double tolerance) const { return error_ <= std::max({tolerance, request_.target_error, 1e-15}); }
 
   /// \throws InputError naming the column if one is not finite.
   Evaluated<P> evaluate(const std::vector<Index>& js) {
@@ -101,6 +114,21 @@ class SelectionRun {
     WorkingSet<P> working(problem_);
     working.append(evaluate(rules.start()).block);
     return working;
+  }
+
+  /// Positions of the columns that have a weight or must be kept.
+  std::vector<Index> used_positions(const WorkingSet<P>& working, const Vector& w) const {
+    std::vector<Index> used;
+    for (Index k = 0; k < w.size(); ++k)
+      if (w[k] != 0 || rules.must_keep(working.block().index(k))) used.push_back(k);
+    return used;
+  }
+
+  /// For every column of the working set: must it be kept?
+  std::vector<char> must_keep(const WorkingSet<P>& working) const {
+    std::vector<char> result(working.size());
+    for (Index k = 0; k < working.size(); ++k) result[k] = rules.must_keep(working.block().index(k));
+    return result;
   }
 
   /// Drops the columns that have no weight, unless they must be kept; w shrinks with the working set.
@@ -142,7 +170,7 @@ class SelectionRun {
   Selection finish(WorkingSet<P>& working, FinalWeights weights, Status status, Index iterations,
                    std::string stop_reason) {
     Vector w = restore_best(working);
-    if (weights == FinalWeights::Refitted) {
+    if (weights == FinalWeights::NonNegative) {
       NnlsSolution refitted = working.fit(used_positions(working, w));
       working.polish(refitted);
       if (working.residual(refitted.w).norm() <= working.residual(w).norm()) w = std::move(refitted.w);
@@ -165,13 +193,6 @@ class SelectionRun {
 
  private:
   double relative(double residual) const { return residual > 0 ? residual / b_norm_ : 0; }
-
-  std::vector<Index> used_positions(const WorkingSet<P>& working, const Vector& w) const {
-    std::vector<Index> used;
-    for (Index k = 0; k < w.size(); ++k)
-      if (w[k] > 0 || rules.must_keep(working.block().index(k))) used.push_back(k);
-    return used;
-  }
 
   // Makes `working` hold the best iterate, ascending; what has left it meanwhile is evaluated again.
   Vector restore_best(WorkingSet<P>& working) {
@@ -202,7 +223,7 @@ class SelectionRun {
     double worst = 0;
     for (Index k = 0; k < g.size(); ++k)
       if (working.gram()(k, k) > 0)
-        worst = std::max(worst, (w[k] > 0 ? std::abs(g[k]) : g[k]) / std::sqrt(working.gram()(k, k)));
+        worst = std::max(worst, (w[k] != 0 ? std::abs(g[k]) : g[k]) / std::sqrt(working.gram()(k, k)));
     return worst / b_norm_;
   }
 

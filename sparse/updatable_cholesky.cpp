@@ -1,5 +1,6 @@
 #include <sparse/updatable_cholesky.hpp>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Jacobi>
 
 #include <cassert>
@@ -9,6 +10,25 @@
 
 namespace supple {
 
+namespace {
+// What is left of a dependent column is the rounding error of n products of numbers of at most 1.
+double noise(Index n) {
+  return 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(n + 4);
+}
+}  // namespace
+
+bool UpdatableCholesky::assign(MatrixIn G) {
+  assert(G.rows() == G.cols() && G.cols() <= R_.cols());
+  size_ = 0;
+  const Eigen::LLT<Matrix> factor(G);
+  if (factor.info() != Eigen::Success) return false;
+  const auto& L = factor.matrixLLT();
+  if (G.cols() > 0 && !(L.diagonal().array().square().minCoeff() > noise(G.cols()))) return false;
+  R_.topLeftCorner(G.cols(), G.cols()).triangularView<Eigen::Upper>() = L.transpose();
+  size_ = G.cols();
+  return true;
+}
+
 bool UpdatableCholesky::append(VectorIn g) {
   assert(size_ < R_.cols() && g.size() == size_);
   const Index n = size_;
@@ -16,9 +36,7 @@ bool UpdatableCholesky::append(VectorIn g) {
   r = g;
   R_.topLeftCorner(n, n).triangularView<Eigen::Upper>().transpose().solveInPlace(r);
   const double pivot = 1 - r.squaredNorm();
-  // What is left of a dependent column is the rounding error of n products of numbers of at most 1.
-  const double noise = 16 * std::numeric_limits<double>::epsilon() * static_cast<double>(n + 4);
-  if (!(pivot > noise)) return false;
+  if (!(pivot > noise(n))) return false;
   R_(n, n) = std::sqrt(pivot);
   ++size_;
   return true;

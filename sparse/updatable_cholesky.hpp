@@ -13,6 +13,9 @@ class UpdatableCholesky {
   explicit UpdatableCholesky(Index max_size) : R_(max_size, max_size) {}
 
   Index size() const { return size_; }
+  /// Starts anew with all of G (unit diagonal, lower triangle read), in blocks. O(size³/3).
+  /// \return false, and the factor is empty, if to rounding G is singular.
+  bool assign(MatrixIn G);
   /// Adds one row and column: g (size) holds the inner products with those present. O(size²).
   /// \return false, and nothing has changed, if to rounding the new one depends linearly on those present.
   bool append(VectorIn g);

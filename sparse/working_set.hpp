@@ -66,6 +66,15 @@ class WorkingSet {
   /// Non-negative weights of the least-squares fit, starting from the positions `passive`.
   NnlsSolution fit(std::span<const Index> passive = {}) const { return Fnnls{}(gram_, atb_, passive); }
 
+  /// The same with only the columns at these positions, started from all of them; 0 elsewhere.
+  Vector fit_on(const std::vector<Index>& positions) const {
+    Vector w = Vector::Zero(size());
+    w(positions) = Fnnls{}(gram_(positions, positions), atb_(positions),
+                           all_positions(static_cast<Index>(positions.size())))
+                       .w;
+    return w;
+  }
+
   /// Wins back digits that the normal equations have lost, by refinement with the residual of A itself
   /// (Björck 1987).
   void polish(NnlsSolution& solution) const {

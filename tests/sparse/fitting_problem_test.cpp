@@ -6,6 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
+#include <type_traits>
+
 namespace supple {
 namespace {
 
@@ -14,14 +17,10 @@ using testing::gaussian;
 const std::vector<Index> some{7, 2, 300, 11};
 const std::vector<Index> more{0, 150};
 
-DenseProblem problem() {
-  return {gaussian(60, 320, 1), gaussian(60, 1, 2)};
-}
-
 template <ColumnBlock C>
-void expect_columns(const C& block, const Matrix& A, const std::vector<Index>& indices) {
-  const Matrix A_C = A(Eigen::all, indices);
-  const Vector w = gaussian(A_C.cols(), 1, 3), r = gaussian(A.rows(), 1, 4);
+void expect_columns(const C& block, const Matrix& matrix, const std::vector<Index>& indices) {
+  const Matrix A_C = matrix(Eigen::all, indices);
+  const Vector w = gaussian(A_C.cols(), 1, 3), r = gaussian(matrix.rows(), 1, 4);
   ASSERT_EQ(block.size(), A_C.cols());
   for (Index k = 0; k < block.size(); ++k) EXPECT_EQ(block.index(k), indices[k]);
   EXPECT_TRUE(block.times(w).isApprox(A_C * w, 1e-13));
@@ -30,37 +29,50 @@ void expect_columns(const C& block, const Matrix& A, const std::vector<Index>& i
   EXPECT_TRUE(block.squared_norms().isApprox(A_C.colwise().squaredNorm().transpose(), 1e-13));
 }
 
-TEST(ColumnsOf, AreTheColumnsOfTheMatrix) {
-  const DenseProblem dense = problem();
-  expect_columns(columns_of(dense, some), dense.matrix(), some);
-  expect_columns(columns_of(testing::ColumnsOnly(dense.matrix(), dense.rhs()), some), dense.matrix(), some);
+// Both representations of columns, from the same numbers.
+const Matrix A = gaussian(60, 320, 1);
+const DenseProblem dense(A, gaussian(60, 1, 2));
+const testing::ColumnsOnly on_demand(A, dense.rhs());
+
+template <typename P>
+struct Block : ::testing::Test {
+  static const P& problem() {
+    if constexpr (std::is_same_v<P, DenseProblem>)
+      return dense;
+    else
+      return on_demand;
+  }
+};
+using Problems = ::testing::Types<DenseProblem, testing::ColumnsOnly>;
+TYPED_TEST_SUITE(Block, Problems);
+
+TYPED_TEST(Block, HoldsTheColumnsOfTheMatrix) {
+  expect_columns(columns_of(this->problem(), some), A, some);
 }
 
-TEST(DenseColumns, GrowAndShrinkLikeTheirIndexSets) {
-  const DenseProblem dense = problem();
-  DenseColumns block = columns_of(dense, some);
-  block.append(columns_of(dense, more));
-  expect_columns(block, dense.matrix(), {7, 2, 300, 11, 0, 150});
+TYPED_TEST(Block, GrowsAndShrinksLikeItsIndexSet) {
+  auto block = columns_of(this->problem(), some);
+  block.append(columns_of(this->problem(), more));
+  expect_columns(block, A, {7, 2, 300, 11, 0, 150});
   const std::vector<Index> positions{5, 0, 2};
-  expect_columns(block.subset(positions), dense.matrix(), {150, 7, 300});
-  DenseColumns empty = columns_of(dense, std::vector<Index>{});
+  expect_columns(block.subset(positions), A, {150, 7, 300});
+  auto empty = columns_of(this->problem(), std::vector<Index>{});
   EXPECT_EQ(empty.size(), 0);
   EXPECT_EQ(empty.times(Vector(0)), Vector::Zero(60));
   empty.append(block);
-  expect_columns(empty, dense.matrix(), {7, 2, 300, 11, 0, 150});
+  expect_columns(empty, A, {7, 2, 300, 11, 0, 150});
 }
 
-TEST(DenseColumns, GramOfTwoBlocksIsTheirProduct) {
-  const DenseProblem dense = problem();
-  const Matrix expected = dense.matrix()(Eigen::all, some).transpose() * dense.matrix()(Eigen::all, more);
-  EXPECT_TRUE(columns_of(dense, some).gram(columns_of(dense, more)).isApprox(expected, 1e-13));
+TYPED_TEST(Block, MultipliesWithAnother) {
+  const Matrix expected = A(Eigen::all, some).transpose() * A(Eigen::all, more);
+  EXPECT_TRUE(
+      columns_of(this->problem(), some).gram(columns_of(this->problem(), more)).isApprox(expected, 1e-13));
 }
 
-TEST(DenseColumns, GiveTheSameBitsWhateverTheNumberOfThreads) {
-  const DenseProblem dense = problem();
-  std::vector<Index> all(dense.cols());
-  for (Index j = 0; j < dense.cols(); ++j) all[j] = j;
-  const DenseColumns block = columns_of(dense, all);
+TYPED_TEST(Block, GivesTheSameBitsWhateverTheNumberOfThreads) {
+  std::vector<Index> all(A.cols());
+  std::iota(all.begin(), all.end(), Index{0});
+  const auto block = columns_of(this->problem(), all);
   set_num_threads(1);
   const Matrix G = block.gram(block);
   const Vector g = block.transpose_times(dense.rhs());
@@ -70,11 +82,16 @@ TEST(DenseColumns, GiveTheSameBitsWhateverTheNumberOfThreads) {
   set_num_threads(0);
 }
 
+TEST(DenseProblem, MultipliesWithAllItsColumns) {
+  EXPECT_TRUE(dense.transpose_times(dense.rhs()).isApprox(A.transpose() * dense.rhs(), 1e-13));
+  EXPECT_TRUE(dense.squared_norms().isApprox(A.colwise().squaredNorm().transpose(), 1e-13));
+}
+
 TEST(DenseProblem, RestrictsToGroupsOfRows) {
-  const Matrix A = gaussian(6, 3, 1);
-  const DenseProblem part = DenseProblem(A, A.col(0), 2).restricted_to(std::vector<Index>{2, 0});
-  EXPECT_EQ(part.matrix().topRows(2), A.middleRows(4, 2));
-  EXPECT_EQ(part.matrix().bottomRows(2), A.topRows(2));
+  const Matrix B = gaussian(6, 3, 1);
+  const DenseProblem part = DenseProblem(B, B.col(0), 2).restricted_to(std::vector<Index>{2, 0});
+  EXPECT_EQ(part.matrix().topRows(2), B.middleRows(4, 2));
+  EXPECT_EQ(part.matrix().bottomRows(2), B.topRows(2));
   EXPECT_EQ(part.rhs(), part.matrix().col(0));
 }
 
@@ -84,9 +101,9 @@ TEST(DenseProblem, RefusesWhatDoesNotFit) {
 }
 
 TEST(UpdatableCholesky, FollowsItsMatrix) {
-  Matrix A = gaussian(30, 12, 5);
-  A.colwise().normalize();
-  const Matrix G = A.transpose() * A;
+  Matrix B = gaussian(30, 12, 5);
+  B.colwise().normalize();
+  const Matrix G = B.transpose() * B;
   UpdatableCholesky factor(12);
   std::vector<Index> present;
   const auto append = [&](Index j) {
@@ -108,17 +125,22 @@ TEST(UpdatableCholesky, FollowsItsMatrix) {
   append(0);
   append(5);
   check();
+  ASSERT_TRUE(factor.assign(G));
+  present = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  check();
 }
 
 TEST(UpdatableCholesky, RefusesADependentColumn) {
-  Matrix A = gaussian(30, 5, 7);
-  A.col(4) = A.leftCols(4).rowwise().sum();
-  A.colwise().normalize();
-  const Matrix G = A.transpose() * A;
+  Matrix B = gaussian(30, 5, 7);
+  B.col(4) = B.leftCols(4).rowwise().sum();
+  B.colwise().normalize();
+  const Matrix G = B.transpose() * B;
   UpdatableCholesky factor(5);
   for (Index j = 0; j < 4; ++j) ASSERT_TRUE(factor.append(G.col(j).head(j)));
   EXPECT_FALSE(factor.append(G.col(4).head(4)));
   EXPECT_EQ(factor.size(), 4);
+  EXPECT_FALSE(factor.assign(G));
+  EXPECT_TRUE(factor.assign(G.topLeftCorner(4, 4)));
 }
 
 }  // namespace

@@ -1,0 +1,78 @@
+#pragma once
+/// \file Non-negative subspace pursuit: few columns, small error, little time.
+
+#include <sparse/pruning.hpp>
+#include <sparse/selection_run.hpp>
+
+namespace supple {
+
+/// Improves a selection by growing and pruning it: each iteration draws c columns at random, deals them into
+/// groups, adds of each group the one whose direction fits the residual best, solves NNLS on the union,
+/// prunes that to s by backward elimination, and keeps the result if the error is smaller. As many groups as
+/// columns are missing, plus a share of s. The groups keep the new columns diverse; which stay is for pruning
+/// to decide, and it decides with the refit in view, where a gradient sees one column at a time. The error
+/// never increases; there is no certificate that it is the smallest. \note O(c rows) for entries of A, O(rows
+/// s²) for the Gram matrix of the added share, O(s³) for fit and pruning, an iteration. \see Dai & Milenkovic
+/// 2009 (subspace pursuit); docs/selectors.md for measurements.
+struct NnSp {
+  double tolerance = 0;            ///< stop at this relative error, if the request has no larger one
+  Index max_iterations = 30;       ///< more still improves: 1.15 × less error for every doubling
+  double candidates_per_size = 2;  ///< c/s; more costs more columns and gains little
+  double added_per_size =
+      0.25;            ///< share of s that each iteration tries to exchange; 1: slower, and a little better
+  Index patience = 10; ///< stop after so many draws in a row that improve nothing
+  std::uint64_t seed = 0;
+
+  template <FittingProblem P>
+  Selection operator()(const P& problem, const SelectionRequest& request) const {
+    require(candidates_per_size > 0, "candidates_per_size is not positive, expected about 2");
+    require(added_per_size > 0, "added_per_size is not positive, expected about 0.25");
+    SelectionRun<P> run(problem, request);
+    const Index s = run.rules.size(), c = share(candidates_per_size, s), added = share(added_per_size, s);
+    Random random(seed);
+
+    WorkingSet<P> S = run.start();
+    Vector w = S.fit().w;
+    Vector r = run.record(S, w);
+    run.drop_unused(S, w);
+
+    Index iterations = 0, unchanged = 0;
+    const auto finish = [&](Status status, const char* reason) {
+      return run.finish(S, FinalWeights::NonNegative, status, iterations, reason);
+    };
+    for (; iterations < max_iterations; ++iterations) {
+      if (run.met(tolerance)) return finish(Status::Converged, "target error reached");
+      run.tell(iterations, max_iterations);
+
+      const Index old_size = S.size(), groups = s - old_size + added;
+      const std::vector<Index> rest = run.rules.eligible_without(S.indices());
+      const Evaluated<P> drawn = run.evaluate(random.sample(rest, std::max(c, groups)));
+      const Vector cosines = improving(drawn.block.transpose_times(r), drawn.norms, run.b_norm()).cosines;
+      const std::vector<Index> entering = best_of_groups(cosines, groups);
+      if (entering.empty() && drawn.block.size() == static_cast<Index>(rest.size()))
+        return finish(Status::Converged, "no column improves the selection");
+
+      S.append(drawn.block.subset(entering));
+      Vector w_next = S.fit_on(all_positions(S.size()));
+      if (static_cast<Index>(run.used_positions(S, w_next).size()) > s)
+        w_next = S.fit_on(prune(S.gram(), w_next, s, run.must_keep(S)));
+
+      const double error = run.error();
+      const Vector r_next = run.record(S, w_next);
+      if (run.error() < error) {
+        w = w_next;
+        r = r_next;
+        run.drop_unused(S, w);
+        unchanged = 0;
+      } else {
+        S.keep(all_positions(old_size));
+        if (++unchanged >= patience) return finish(Status::Stagnated, "repeated draws improve nothing");
+      }
+    }
+    if (run.met(tolerance)) return finish(Status::Converged, "target error reached");
+    return finish(Status::MaxIterations, "limit of iterations reached");
+  }
+};
+static_assert(SubsetSelector<NnSp>);
+
+}  // namespace supple

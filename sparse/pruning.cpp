@@ -1,0 +1,58 @@
+#include <core/check.hpp>
+#include <sparse/pruning.hpp>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cassert>
+
+namespace supple {
+
+std::vector<Index> prune(MatrixIn gram, VectorIn weights, Index size, const std::vector<char>& fixed) {
+  assert(gram.rows() == weights.size() && static_cast<Index>(fixed.size()) == weights.size());
+  std::vector<Index> kept, active;  // active: those with a weight, in the order of the matrices below
+  for (Index i = 0; i < weights.size(); ++i) {
+    if (weights[i] > 0)
+      active.push_back(i);
+    else if (fixed[i])
+      kept.push_back(i);
+  }
+  size -= static_cast<Index>(kept.size());
+
+  auto n = static_cast<Index>(active.size());
+  Vector w = weights(active);
+  if (n > size) {
+    const Vector scale = gram.diagonal()(active).cwiseSqrt().cwiseInverse();  // to unit columns
+    Matrix H = scale.asDiagonal() * gram(active, active) * scale.asDiagonal();
+    const Eigen::LLT<Matrix> factor(H);
+    if (factor.info() != Eigen::Success)
+      throw SolverError("columns with a weight depend linearly on each other");
+    H = factor.solve(Matrix::Identity(n, n));
+    w = w.cwiseQuotient(scale);
+
+    for (; n > size; --n) {
+      Index k = -1;
+      double least = 0;
+      for (Index i = 0; i < n; ++i) {
+        if (fixed[active[i]]) continue;
+        const double loss = w[i] > 0 ? w[i] * w[i] / H(i, i) : w[i];
+        if (k < 0 || loss < least) k = i, least = loss;
+      }
+      if (k < 0) break;  // all that is left is fixed
+      // The last one takes the place of column k, and the leading blocks are downdated.
+      const Vector h = H.col(k).head(n);
+      w.head(n) -= h * (w[k] / h[k]);
+      H.topLeftCorner(n, n).noalias() -= (h / h[k]) * h.transpose();
+      H.col(k).head(n) = H.col(n - 1).head(n);
+      H.row(k).head(n) = H.row(n - 1).head(n);
+      w[k] = w[n - 1];
+      active[k] = active[n - 1];
+    }
+    active.resize(n);
+  }
+  kept.insert(kept.end(), active.begin(), active.end());
+  std::sort(kept.begin(), kept.end());
+  return kept;
+}
+
+}  // namespace supple
