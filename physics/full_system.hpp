@@ -60,6 +60,7 @@ class FullSystem {
   const Model& model() const { return *model_; }
   const std::shared_ptr<const Model>& shared_model() const { return model_; }
   const NodeNumbering& numbering() const { return numbering_; }
+  std::span<const Index> stencils() const { return stencils_; }  ///< stencil_size nodes a component
 
   const Vector& mass() const { return mass_; }              ///< dim [kg]
   const Vector& nodal_mass() const { return nodal_mass_; }  ///< n [kg]

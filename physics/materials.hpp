@@ -6,6 +6,7 @@
 ///   9 over
 /// vec(F) by columns.
 
+#include <core/check.hpp>
 #include <core/pack.hpp>
 #include <core/types.hpp>
 
@@ -21,6 +22,13 @@ concept MaterialOver = requires(const Material& material, const Matrix3<Real>& F
   { material.stress(F) } -> std::convertible_to<Matrix3<Real>>;
   { material.tangent(F) } -> std::convertible_to<Matrix9<Real>>;
 };
+
+template <typename Real>
+Real determinant(const Matrix3<Real>& F) {
+  return F(0, 0) * (F(1, 1) * F(2, 2) - F(1, 2) * F(2, 1)) +
+         F(0, 1) * (F(1, 2) * F(2, 0) - F(1, 0) * F(2, 2)) +
+         F(0, 2) * (F(1, 0) * F(2, 1) - F(1, 1) * F(2, 0));
+}
 
 /// Young's modulus [Pa] and Poisson's ratio: the linear behaviour at rest, common to all isotropic materials
 /// here.
@@ -41,7 +49,11 @@ template <typename Real = double>
 struct StVenantKirchhoff {
   Real lambda, mu;  ///< Lamé's parameters [Pa]
 
-  static StVenantKirchhoff from(const IsotropicModuli& m) { return {m.lame(), m.shear()}; }
+  /// \throws std::invalid_argument as m.check().
+  static StVenantKirchhoff from(const IsotropicModuli& m) {
+    m.check();
+    return {m.lame(), m.shear()};
+  }
 
   Real energy(const Matrix3<Real>& F) const {
     const Matrix3<Real> E = green_strain(F);
@@ -88,8 +100,11 @@ struct MooneyRivlin {
   Real c10, c01;  ///< [Pa]
   Real bulk;      ///< κ [Pa]
 
-  /// The constants that agree with `m` at rest; share = c₀₁ / (c₁₀ + c₀₁).
+  /// The constants that agree with `m` at rest; share = c₀₁ / (c₁₀ + c₀₁) in [0, 1].
+  /// \throws std::invalid_argument as m.check(), and for another share.
   static MooneyRivlin from(const IsotropicModuli& m, double share = 0.25) {
+    m.check();
+    require(share >= 0 && share <= 1, "share of c01 is " + std::to_string(share) + ", expected 0 to 1");
     return {m.shear() / 2 * (1 - share), m.shear() / 2 * share, m.bulk()};
   }
 
@@ -144,11 +159,6 @@ struct MooneyRivlin {
   }
 
  private:
-  static Real determinant(const Matrix3<Real>& F) {
-    return F(0, 0) * (F(1, 1) * F(2, 2) - F(1, 2) * F(2, 1)) +
-           F(0, 1) * (F(1, 2) * F(2, 0) - F(1, 0) * F(2, 2)) +
-           F(0, 2) * (F(1, 0) * F(2, 1) - F(1, 1) * F(2, 0));
-  }
   /// J^(−1/3); NaN for J ≤ 0.
   static Real reciprocal_cbrt(const Real& J) {
     using std::cbrt;

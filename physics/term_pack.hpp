@@ -34,11 +34,16 @@ inline PackIndices consecutive_components(Index first, Index count) {
   return lanes;
 }
 
-/// Eight components of a model, ready to be evaluated together.
+/// Eight components of a model, ready to be evaluated together; or one component in eight states.
 template <ForceModel F>
 class TermPack {
  public:
   using Displacements = Local<F::local_dofs, Pack>;
+
+  /// The same component in every lane.
+  TermPack(std::shared_ptr<const F> model, Index component) : model_(std::move(model)) {
+    components_.fill(component);
+  }
 
   TermPack(std::shared_ptr<const F> model, const PackIndices& components)
       : model_(std::move(model)), components_(components) {}
@@ -91,9 +96,21 @@ class TermPack<F> {
     term_ = std::bit_cast<Packed>(gathered);
   }
 
+  TermPack(const std::shared_ptr<const F>& model, Index component) {
+    const auto parameters = std::bit_cast<std::array<double, num_parameters>>(Scalar(model->term(component)));
+    std::array<Pack, num_parameters> broadcast;
+    for (std::size_t p = 0; p < num_parameters; ++p) broadcast[p] = parameters[p];
+    term_ = std::bit_cast<Packed>(broadcast);
+  }
+
   Pack energy(const Displacements& u) const { return term_.energy(u); }
   Displacements force(const Displacements& u) const { return term_.force(u); }
   LocalMatrix<F::local_dofs, Pack> stiffness(const Displacements& u) const { return term_.stiffness(u); }
+  /// Current over rest volume, where the terms have such a thing.
+  Pack jacobian(const Displacements& u) const requires requires(const typename F::template Term<Pack>& term) {
+    term.jacobian(u);
+  }
+  { return term_.jacobian(u); }
 
  private:
   using Scalar = typename F::template Term<double>;

@@ -65,6 +65,9 @@ class TetElasticity {
       return K;
     }
 
+    /// det F: current over rest volume; ≤ 0 for an inverted tet.
+    Real jacobian(const Local<12, Real>& u) const { return determinant(gradient(u)); }
+
     /// F at the displacements u of the corners.
     Matrix3<Real> gradient(const Local<12, Real>& u) const {
       Matrix3<Real> edges;
@@ -80,15 +83,19 @@ class TetElasticity {
   };
 
   /// \param materials  one for all tets, or one a tet. \throws std::invalid_argument on another number of
-  /// materials or a tet whose volume is not positive.
+  /// materials, a node that does not exist or a tet whose volume is not positive.
   TetElasticity(const TetMesh& mesh, const std::vector<Material<double>>& materials)
-      : num_nodes_(mesh.num_nodes()) {
+      : rest_positions_(mesh.nodes) {
     require(materials.size() == 1 || static_cast<Index>(materials.size()) == mesh.num_tets(),
             std::to_string(materials.size()) + " materials for " + std::to_string(mesh.num_tets()) +
                 " tets, expected one for all or one each");
     tets_ = mesh.tets;
     terms_.reserve(tets_.size());
     for (Index e = 0; e < mesh.num_tets(); ++e) {
+      for (const Index v : tets_[e])
+        if (v < 0 || v >= num_nodes())
+          throw std::invalid_argument("tet " + std::to_string(e) + " names node " + std::to_string(v) +
+                                      ", expected 0 to " + std::to_string(num_nodes() - 1));
       Matrix3<double> edges;
       for (int a = 0; a < 3; ++a)
         edges.col(a) = (mesh.nodes.row(tets_[e][a + 1]) - mesh.nodes.row(tets_[e][0])).transpose();
@@ -106,7 +113,8 @@ class TetElasticity {
   TetElasticity(const TetMesh& mesh, const Material<double>& material)
       : TetElasticity(mesh, std::vector<Material<double>>{material}) {}
 
-  Index num_nodes() const { return num_nodes_; }
+  Index num_nodes() const { return rest_positions_.rows(); }
+  const Points& rest_positions() const { return rest_positions_; }  ///< n × 3 [m]
   Index num_components() const { return static_cast<Index>(tets_.size()); }
   std::span<const Index, 4> stencil(Index i) const { return tets_[i]; }
   const Term<double>& term(Index i) const { return terms_[i]; }
@@ -116,7 +124,7 @@ class TetElasticity {
   LocalMatrix<12> stiffness(Index i, const Local<12>& u_i) const { return terms_[i].stiffness(u_i); }
 
  private:
-  Index num_nodes_;
+  Points rest_positions_;
   std::vector<Tet> tets_;
   std::vector<Term<double>> terms_;
 };

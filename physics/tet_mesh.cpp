@@ -28,22 +28,30 @@ bool is_odd(const Triangle& t) {
   return ((t[0] > t[1]) + (t[0] > t[2]) + (t[1] > t[2])) % 2 == 1;
 }
 
-/// Calls visit(ids) for every set of equal keys, in order of keys; ids ascend. Item `id` has keys[id], whose
-/// smallest entry comes first and is below `count`: buckets by that entry leave little to sort.
+/// Calls visit(ids) for every set of equal keys, in order of keys; ids ascend. A key is ascending node
+/// numbers below `num_nodes`: buckets by the first leave little to sort.
 template <typename Key, typename Visit>
-void visit_equal(const std::vector<Key>& keys, Index count, const Visit& visit) {
-  std::vector<Index> bucket_end(count + 1, 0);
+void visit_equal(const std::vector<Key>& keys, Index num_nodes, const Visit& visit) {
+  std::vector<Index> bucket_end(num_nodes + 1, 0);
   for (const Key& key : keys) ++bucket_end[key[0] + 1];
   std::partial_sum(bucket_end.begin(), bucket_end.end(), bucket_end.begin());
-  std::vector<Index> ids(keys.size());
-  for (Index id = 0; id < static_cast<Index>(keys.size()); ++id) ids[bucket_end[keys[id][0]]++] = id;
-  for (Index bucket = 0, begin = 0; bucket < count; begin = bucket_end[bucket++]) {
+  struct Item {
+    Index rest, id;  // the rest of the key as one number
+    bool operator<(const Item& other) const { return rest != other.rest ? rest < other.rest : id < other.id; }
+  };
+  std::vector<Item> items(keys.size());
+  for (Index id = 0; id < static_cast<Index>(keys.size()); ++id) {
+    const Key& key = keys[id];
+    items[bucket_end[key[0]]++] = {key.size() == 3 ? key[1] * num_nodes + key.back() : key.back(), id};
+  }
+  std::vector<Index> ids;
+  for (Index bucket = 0, begin = 0; bucket < num_nodes; begin = bucket_end[bucket++]) {
     const Index end = bucket_end[bucket];
-    std::sort(ids.begin() + begin, ids.begin() + end,
-              [&](Index a, Index b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
-    for (Index first = begin, last = begin; first < end; first = last) {
-      while (last < end && keys[ids[last]] == keys[ids[first]]) ++last;
-      visit(std::span<const Index>(ids.data() + first, last - first));
+    std::sort(items.begin() + begin, items.begin() + end);
+    for (Index k = begin; k < end;) {
+      const Index rest = items[k].rest;
+      for (ids.clear(); k < end && items[k].rest == rest; ++k) ids.push_back(items[k].id);
+      visit(std::span<const Index>(ids));
     }
   }
 }
@@ -209,17 +217,9 @@ Hinges boundary_hinges(const TetMesh& mesh) {
 }
 
 NodeComponents connected_components(const TetMesh& mesh) {
-  std::vector<Index> parent(mesh.num_nodes());
-  std::iota(parent.begin(), parent.end(), Index{0});
-  for (const Tet& tet : mesh.tets)
-    for (int a = 1; a < 4; ++a) unite(parent, tet[0], tet[a]);
-  NodeComponents components;
-  components.of_node.assign(mesh.num_nodes(), -1);
-  for (Index v = 0; v < mesh.num_nodes(); ++v) {
-    const Index r = root_of(parent, v);  // the smallest node of its component, so numbered before v
-    components.of_node[v] = r == v ? components.count++ : components.of_node[r];
-  }
-  return components;
+  static_assert(sizeof(Tet) == 4 * sizeof(Index));
+  return connected_components({mesh.tets.empty() ? nullptr : mesh.tets.front().data(), 4 * mesh.tets.size()},
+                              4, mesh.num_nodes());
 }
 
 }  // namespace supple

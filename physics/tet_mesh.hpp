@@ -2,6 +2,7 @@
 /// \file The geometry of a solid: tetrahedra over nodes.
 
 #include <core/types.hpp>
+#include <physics/node_components.hpp>
 
 #include <array>
 #include <cstdint>
@@ -67,12 +68,7 @@ struct Hinges {
 };
 Hinges boundary_hinges(const TetMesh& mesh);
 
-/// Number of the connected component (through shared nodes) of each node, 0 … count − 1 in order of first
-/// nodes.
-struct NodeComponents {
-  std::vector<Index> of_node;
-  Index count = 0;
-};
+/// Connected components of the object, through shared nodes.
 NodeComponents connected_components(const TetMesh& mesh);
 
 }  // namespace supple

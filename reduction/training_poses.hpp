@@ -1,0 +1,112 @@
+#pragma once
+/// \file Poses to train on: random points of the subspace, scaled by the object's own stiffness.
+
+#include <core/random.hpp>
+#include <reduction/pose_sweep.hpp>
+#include <reduction/reduced_modes.hpp>
+
+#include <cmath>
+#include <cstdint>
+
+namespace supple {
+
+/// What to do with a pose in which a component is inverted (its volume is ≤ 0).
+enum class InvertedPoses {
+  Keep,    ///< as it is; for materials defined everywhere, such as St. Venant–Kirchhoff
+  Shrink,  ///< scale the pose by ¾ until nothing is inverted; keeps the direction, lowers the amplitude
+  Redraw,  ///< draw another pose, up to 20 times, then shrink
+};
+
+/// Normal random numbers in the coordinates of the reduced vibration modes, with standard deviation ∝ ω̄⁻ᵉ
+/// (Sec. 4.1). Rigid modes of free objects stay at rest: their forces turn with the object in a subspace W ⊗
+/// I₃.
+struct PoseOptions {
+  Index count = 300;          ///< T
+  double omega_exponent = 2;  ///< 1 in the paper; 2 draws less energy into stiff modes
+  /// Expected rms displacement of a pose (mass-weighted mean over the object) as a share of the bounding
+  /// box's diagonal; pose t uses entry t modulo their number. Mixed sizes keep small motions, which the rest
+  /// stiffness rules, from drowning in large ones.
+  std::vector<double> amplitudes = {0.05, 0.017, 0.005};
+  InvertedPoses inverted = InvertedPoses::Keep;
+  std::uint64_t seed = 1;
+};
+
+struct TrainingPoses {
+  Matrix Q;                       ///< d × T, reduced coordinates
+  Index inverted = 0;             ///< poses with an inverted component as first drawn
+  Index inverted_components = 0;  ///< how many components were inverted, over all poses as first drawn
+  Index redrawn = 0;              ///< draws that were thrown away
+  Index shrunk = 0;               ///< poses that were scaled down
+};
+
+/// Coordinates of one random pose of unit expected rms displacement; see PoseOptions.
+class PoseSampler {
+ public:
+  /// \param total_mass  Σ m_v; the basis is M-orthonormal, so ‖q‖² / total_mass is the mean square
+  /// displacement.
+  PoseSampler(const ReducedModes& modes, double omega_exponent, double total_mass);
+  Vector draw(Random& random) const;
+
+ private:
+  Matrix Phi_;
+  Vector deviations_;
+};
+
+/// \param diagonal  of the object's bounding box at rest [m].
+/// \throws std::invalid_argument for options out of range; SolverError if a pose stays inverted however
+/// small.
+template <ForceModel Model, Subspace S>
+TrainingPoses sample_poses(const std::shared_ptr<const Model>& model, const S& subspace,
+                           const ReducedModes& modes, double total_mass, double diagonal,
+                           const PoseOptions& options) {
+  require(options.count >= 1,
+          "number of poses is " + std::to_string(options.count) + ", expected at least 1");
+  require(!options.amplitudes.empty(), "no amplitude is given for the poses");
+  for (const double a : options.amplitudes)
+    require(std::isfinite(a) && a > 0, "amplitude of the poses is " + std::to_string(a) + ", expected > 0");
+  const PoseSampler sampler(modes, options.omega_exponent, total_mass);
+  Random random(options.seed);
+  const auto draw = [&](Index t) -> Vector {
+    return options.amplitudes[t % options.amplitudes.size()] * diagonal * sampler.draw(random);
+  };
+  TrainingPoses poses;
+  poses.Q.resize(subspace.dim(), options.count);
+  for (Index t = 0; t < options.count; ++t) poses.Q.col(t) = draw(t);
+
+  std::vector<Index> bad;
+  const std::vector<Index> inverted = count_inverted(model, subspace, poses.Q);
+  for (Index t = 0; t < options.count; ++t)
+    if (inverted[t] > 0) {
+      bad.push_back(t);
+      poses.inverted_components += inverted[t];
+    }
+  poses.inverted = static_cast<Index>(bad.size());
+  if (options.inverted == InvertedPoses::Keep) return poses;
+
+  const auto still_bad = [&] {
+    Matrix Q(subspace.dim(), bad.size());
+    for (std::size_t k = 0; k < bad.size(); ++k) Q.col(k) = poses.Q.col(bad[k]);
+    const std::vector<Index> counts = count_inverted(model, subspace, Q);
+    std::vector<Index> rest;
+    for (std::size_t k = 0; k < bad.size(); ++k)
+      if (counts[k] > 0) rest.push_back(bad[k]);
+    return rest;
+  };
+  if (options.inverted == InvertedPoses::Redraw)
+    for (int attempt = 0; attempt < 20 && !bad.empty(); ++attempt) {
+      for (const Index t : bad) poses.Q.col(t) = draw(t);
+      poses.redrawn += static_cast<Index>(bad.size());
+      bad = still_bad();
+    }
+  poses.shrunk = static_cast<Index>(bad.size());
+  for (int attempt = 0; !bad.empty(); ++attempt) {
+    if (attempt == 60)
+      throw SolverError("pose " + std::to_string(bad[0]) +
+                        " has inverted components however small it is made");
+    for (const Index t : bad) poses.Q.col(t) *= 0.75;
+    bad = still_bad();
+  }
+  return poses;
+}
+
+}  // namespace supple
