@@ -126,11 +126,12 @@ Index Cursor::count(std::string_view what, std::size_t size) {
   return count;
 }
 
-bool Cursor::skip_behind_line(std::string_view word) {
+bool Cursor::skip_behind(std::string_view word, bool at_line_start) {
   for (std::size_t at = bytes_.find(word, position_); at != std::string_view::npos;
        at = bytes_.find(word, at + 1)) {
     const std::size_t end = at + word.size();
-    if ((at == 0 || bytes_[at - 1] == '\n') && (end == bytes_.size() || is_blank(bytes_[end]))) {
+    if ((!at_line_start || at == 0 || bytes_[at - 1] == '\n') &&
+        (end == bytes_.size() || is_blank(bytes_[end]))) {
       word_ = at, position_ = end;
       return true;
     }

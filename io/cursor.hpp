@@ -55,8 +55,8 @@ class Cursor {
   void expect(std::string_view word);
   /// A count ≥ 0 of things that take at least `size` bytes each in what follows.
   Index count(std::string_view what, std::size_t size);
-  /// Goes behind the next occurrence of the word at the start of a line. False and unmoved if there is none.
-  bool skip_behind_line(std::string_view word);
+  /// Goes behind the next occurrence of the word, which ends there. False and unmoved if there is none.
+  bool skip_behind(std::string_view word, bool at_line_start);
 
   // Binary.
   void set_binary(std::endian order) { binary_ = true, swap_ = order != std::endian::native; }

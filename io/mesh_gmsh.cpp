@@ -71,7 +71,7 @@ class GmshReader {
         read_nodes();
       else if (section == "$Elements")
         read_elements();
-      else if (!in_.skip_behind_line(end))
+      else if (!in_.skip_behind(end, /*at_line_start=*/!is_binary_))
         in_.fail("section " + std::string(section) + " is not closed by " + end);
       else
         continue;
