@@ -1,6 +1,7 @@
 #pragma once
 /// \file Non-negative subspace pursuit: few columns, small error, little time.
 
+#include <sparse/hard_threshold.hpp>
 #include <sparse/pruning.hpp>
 #include <sparse/selection_run.hpp>
 
