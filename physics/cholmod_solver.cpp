@@ -1,12 +1,12 @@
 #include <core/check.hpp>
 #include <physics/cholmod_solver.hpp>
+#include <physics/single_threaded_blas.hpp>
 #include <physics/supernodal_factor.hpp>
 
 #include <cholmod.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <dlfcn.h>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -15,40 +15,6 @@
 namespace supple {
 
 namespace {
-
-/// Keeps OpenBLAS on one thread while at least one guard lives: the way it splits a product over threads
-/// changes the bits of the result.
-class SingleThreadedBlas {
- public:
-  SingleThreadedBlas() {
-    const std::lock_guard lock(mutex_);
-    if (guards_++ > 0 || !set_threads()) return;
-    threads_before_ = get_threads()();
-    set_threads()(1);
-  }
-  ~SingleThreadedBlas() {
-    const std::lock_guard lock(mutex_);
-    if (--guards_ == 0 && set_threads()) set_threads()(threads_before_);
-  }
-  SingleThreadedBlas(const SingleThreadedBlas&) = delete;
-  SingleThreadedBlas& operator=(const SingleThreadedBlas&) = delete;
-
- private:
-  // Looked up at run time, because any BLAS may stand behind the system's libblas.
-  static auto set_threads() -> void (*)(int) {
-    static const auto function =
-        reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
-    return function;
-  }
-  static auto get_threads() -> int (*)() {
-    static const auto function = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
-    return function;
-  }
-
-  static inline std::mutex mutex_;
-  static inline int guards_ = 0;
-  static inline int threads_before_ = 1;
-};
 
 /// CHOLMOD's workspace and settings.
 class Workspace {

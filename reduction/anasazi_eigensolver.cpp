@@ -1,4 +1,5 @@
 #include <core/check.hpp>
+#include <physics/single_threaded_blas.hpp>
 #include <reduction/anasazi_adapter.hpp>
 #include <reduction/eigensolver.hpp>
 
@@ -66,6 +67,7 @@ StandardProblem standard_problem(const SparseMatrix& K, const Vector& M_diagonal
     }
     problem.norm = std::max(problem.norm, column_sum);
   }
+  require(problem.norm > 0, "smallest_eigenpairs: K is zero");
   Random random(0);
   Matrix probes(n, 2);
   for (double& value : probes.reshaped()) value = random.normal();
@@ -122,9 +124,9 @@ class ShiftedInverse {
  public:
   ShiftedInverse(const StandardProblem& problem, std::uint64_t seed) : problem_(problem) {
     const Index n = problem.A.rows();
-    // The lowest frequency of a solid with N nodes that are spread evenly: (π/L)² against (2/h)² with L/h =
-    // N^{1/3}; much less if it is slender.
-    const double first_guess = 1e-4 * problem.norm * std::pow(static_cast<double>(n) / 3, -2.0 / 3);
+    // For a compact solid of N nodes, (π/L)² against (2/h)² with L/h = N^{1/3}. Slender ones have a far lower
+    // frequency yet, and a shift that is much too small does less harm than one that is too large.
+    const double first_guess = 1e-6 * problem.norm * std::pow(static_cast<double>(n) / 3, -2.0 / 3);
     const double smallest = 1e-12 * problem.norm;
     shift_ = std::max(first_guess, smallest);
     factorize();
@@ -149,14 +151,15 @@ class ShiftedInverse {
   void factorize() {
     SparseMatrix identity(problem_.A.rows(), problem_.A.cols());
     identity.setIdentity();
-    // Rounding may leave K slightly indefinite, which a larger shift mends; more is the caller's mistake.
-    for (int attempt = 0; attempt < 4; ++attempt, shift_ *= 100) {
+    for (;; shift_ *= 100) {
       const SparseMatrix shifted = problem_.A + shift_ * identity;
       if (cholesky_.dim() == 0) cholesky_.analyze(shifted);
       if (cholesky_.factorize(shifted)) return;
+      // Rounding may leave K slightly indefinite, which a larger shift mends; more is the caller's mistake.
+      if (shift_ > 1e-10 * problem_.norm) break;
     }
     throw SolverError("smallest_eigenpairs: K + σM is not positive definite for σ = " +
-                      std::to_string(shift_ / 100) + " 1/s²: K has negative eigenvalues");
+                      std::to_string(shift_) + " 1/s²: K has negative eigenvalues");
   }
 
   /// A rough value of the smallest eigenvalue that is not zero, by inverse iteration of a small block that
@@ -326,6 +329,7 @@ SparseResult sparse_pairs(const StandardProblem& problem, Index count, const Eig
 
 EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, const Matrix& rigid,
                                const EigenOptions& options) {
+  const SingleThreadedBlas guard;
   const StandardProblem problem = standard_problem(K, M_diagonal, rigid);
   const Index n = K.rows();
   const Index available = n - problem.deflated.cols();
@@ -339,7 +343,7 @@ EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, 
   require(options.max_restarts >= 0,
           "max_restarts is " + std::to_string(options.max_restarts) + ", expected 0 or more");
   EigenPairs result;
-  if (problem.deflated.cols() > 0 && problem.norm > 0) {
+  if (problem.deflated.cols() > 0) {
     result.rigid_residual = product(problem.A, problem.deflated).colwise().norm().maxCoeff() / problem.norm;
     require(result.rigid_residual <= largest_rigid_force,
             "smallest_eigenpairs: K times rigid is not zero, relative size " +
@@ -370,7 +374,7 @@ EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, 
   bool converged = r == options.num_modes;
   for (Index j = 0; j < r; ++j) {
     const double scale = std::max(result.omega_squared[j] + result.shift, zero_energy * problem.norm);
-    result.residuals[j] = problem.norm > 0 ? force.col(j).norm() / scale : 0;
+    result.residuals[j] = force.col(j).norm() / scale;
     const double rounding = 10 * epsilon * problem.norm / scale;
     converged = converged && result.residuals[j] <= std::max(options.tolerance, rounding);
     if (result.omega_squared[j] <= zero_energy * problem.norm) ++result.extra_zero_modes;
