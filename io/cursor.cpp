@@ -126,23 +126,17 @@ Index Cursor::count(std::string_view what, std::size_t size) {
   return count;
 }
 
-bool Cursor::skip_behind(std::string_view word, bool at_line_start) {
+bool Cursor::skip_behind(std::string_view word, Where where) {
   for (std::size_t at = bytes_.find(word, position_); at != std::string_view::npos;
        at = bytes_.find(word, at + 1)) {
     const std::size_t end = at + word.size();
-    if ((!at_line_start || at == 0 || bytes_[at - 1] == '\n') &&
+    if ((where == Where::Anywhere || at == 0 || bytes_[at - 1] == '\n') &&
         (end == bytes_.size() || is_blank(bytes_[end]))) {
       word_ = at, position_ = end;
       return true;
     }
   }
   return false;
-}
-
-void Cursor::skip(std::uint64_t count, std::size_t size, std::string_view what) {
-  word_ = position_;
-  expect_room(count, size, what);
-  position_ += count * size;
 }
 
 void Cursor::expect_room(std::uint64_t count, std::size_t size, std::string_view what) const {
@@ -155,6 +149,10 @@ void Cursor::fail(const std::string& message) const {
   if (binary_) throw InputError(name_ + ", byte " + std::to_string(word_) + ": " + message);
   const auto line = 1 + std::count(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(word_), '\n');
   throw InputError(name_ + ":" + std::to_string(line) + ": " + message);
+}
+
+void Cursor::fail_whole(const std::string& message) const {
+  throw InputError(name_ + ": " + message);
 }
 
 void Cursor::fail_expecting(std::string_view what, std::string_view found) const {

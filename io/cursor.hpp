@@ -24,10 +24,9 @@ std::string read_bytes(const std::filesystem::path& path);
 /// outlive the cursor.
 class Cursor {
  public:
-  /// What separates words besides white space, and what begins a comment that ends with its line ('\0':
-  /// nothing).
+  /// What separates words besides white space, and what begins a comment up to the end of its line.
   struct Syntax {
-    char separator = '\0', comment = '\0';
+    char separator = '\0', comment = '\0';  // '\0': nothing does
   };
 
   Cursor(std::string name, std::string_view bytes) : Cursor(std::move(name), bytes, Syntax{}) {}
@@ -55,8 +54,9 @@ class Cursor {
   void expect(std::string_view word);
   /// A count ≥ 0 of things that take at least `size` bytes each in what follows.
   Index count(std::string_view what, std::size_t size);
-  /// Goes behind the next occurrence of the word, which ends there. False and unmoved if there is none.
-  bool skip_behind(std::string_view word, bool at_line_start);
+  enum class Where { Anywhere, LineStart };
+  /// Goes behind the next occurrence of the word. False and unmoved if there is none.
+  bool skip_behind(std::string_view word, Where where);
 
   // Binary.
   void set_binary(std::endian order) { binary_ = true, swap_ = order != std::endian::native; }
@@ -72,13 +72,13 @@ class Cursor {
     if (swap_) std::reverse(raw.begin(), raw.end());
     return std::bit_cast<Number>(raw);
   }
-  void skip(std::uint64_t count, std::size_t size, std::string_view what);
 
   /// \throws InputError if `count` things of at least `size` bytes each cannot follow.
   void expect_room(std::uint64_t count, std::size_t size, std::string_view what) const;
-  /// \throws InputError "name:line: message" or "name, byte n: message", the place of the last word or
-  /// number.
+  /// \throws InputError "name:line: message" or "name, byte n: message", where the last word or number began.
   [[noreturn]] void fail(const std::string& message) const;
+  /// \throws InputError "name: message".
+  [[noreturn]] void fail_whole(const std::string& message) const;
 
  private:
   void skip_blanks(bool over_lines);

@@ -24,7 +24,7 @@ VtkType vtk_type(std::int64_t type, const Cursor& in) {
   if ((type >= 0 && type <= 9) ||
       is({21, 22, 23, 28, 30, 34, 35, 36, 60, 61, 62, 63, 68, 69, 70, 75, 76, 77}))
     return {false, ""};
-  in.fail("cell type " + std::to_string(type) + " is not known");
+  in.fail_whole("cell type " + std::to_string(type) + " is not known");
 }
 
 }  // namespace
@@ -40,11 +40,11 @@ void add_vtk_cells(const VtkCells& cells, Index first_node, const Cursor& in, Fi
   const auto num_cells = static_cast<Index>(cells.types.size());
   const Index num_nodes = static_cast<Index>(mesh.nodes.size()) - first_node;
   const auto fail = [&in](Index c, const std::string& what) {
-    in.fail("cell " + std::to_string(c) + " " + what);
+    in.fail_whole("cell " + std::to_string(c) + " " + what);
   };
   if (static_cast<Index>(cells.offsets.size()) != num_cells + 1)
-    in.fail("there are " + std::to_string(cells.offsets.size()) + " cells and " + std::to_string(num_cells) +
-            " cell types");
+    in.fail_whole("there are " + std::to_string(cells.offsets.size()) + " cells and " +
+                  std::to_string(num_cells) + " cell types");
   auto first_cell = static_cast<Index>(mesh.tets.size()) + mesh.num_lower;
   for (const auto& [kind, count] : mesh.other_solid) first_cell += count;
   const bool has_region = static_cast<Index>(cells.region.size()) == num_cells;

@@ -71,7 +71,7 @@ class GmshReader {
         read_nodes();
       else if (section == "$Elements")
         read_elements();
-      else if (!in_.skip_behind(end, /*at_line_start=*/!is_binary_))
+      else if (!in_.skip_behind(end, is_binary_ ? Cursor::Where::Anywhere : Cursor::Where::LineStart))
         in_.fail("section " + std::string(section) + " is not closed by " + end);
       else
         continue;

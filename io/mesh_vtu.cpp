@@ -41,6 +41,28 @@ std::optional<std::string> decode_base64(std::string_view text, std::size_t limi
   return bytes;
 }
 
+/// The bytes of an array where the file has them, raw or as base64 digits.
+struct StoredBytes {
+  std::string name;  // of the array, in messages
+  std::string_view text;
+  bool is_raw;
+
+  /// So many bytes from a place on; never allocates more than the text can hold.
+  std::string from(std::size_t at, std::uint64_t count) const {
+    const std::size_t capacity = text.size();
+    if (at > capacity || count > capacity - at)
+      fail("announces " + std::to_string(count) + " bytes, more than can follow");
+    if (is_raw) return std::string(text.substr(at, count));
+    std::optional<std::string> decoded = decode_base64(text, at + count);
+    if (!decoded) fail("expected base64 digits");
+    if (decoded->size() < at + count) fail("the base64 data ends too early");
+    return decoded->substr(at);
+  }
+  [[noreturn]] void fail(const std::string& message) const { throw InputError(name + ": " + message); }
+};
+
+constexpr std::uint64_t max_compression = 1100;  // zlib shrinks to 1/1032 at best
+
 class VtuReader {
  public:
   VtuReader(const Cursor& in, FileMesh& mesh) : in_(in), mesh_(mesh) {}
@@ -48,20 +70,20 @@ class VtuReader {
   void read() {
     parse_xml();
     const pugi::xml_node file = document_.child("VTKFile");
-    if (!file) in_.fail("expected an element VTKFile");
+    if (!file) in_.fail_whole("expected an element VTKFile");
     if (const std::string type = file.attribute("type").value(); type != "UnstructuredGrid")
-      in_.fail("expected a VTKFile of type UnstructuredGrid, found \"" + type.substr(0, 40) + "\"");
+      in_.fail_whole("expected a VTKFile of type UnstructuredGrid, found \"" + type.substr(0, 40) + "\"");
     const std::string order = file.attribute("byte_order").as_string("LittleEndian");
     order_ = order == "BigEndian" ? std::endian::big : std::endian::little;
     header_size_ = std::string_view(file.attribute("header_type").value()) == "UInt64" ? 8 : 4;
     const std::string_view compressor = file.attribute("compressor").value();
     if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-      in_.fail("expected no compression or vtkZLibDataCompressor, found " +
-               std::string(compressor.substr(0, 40)));
+      in_.fail_whole("expected no compression or vtkZLibDataCompressor, found " +
+                     std::string(compressor.substr(0, 40)));
     is_compressed_ = !compressor.empty();
     mesh_.format = "VTK XML";
     const pugi::xml_node grid = file.child("UnstructuredGrid");
-    if (!grid.child("Piece")) in_.fail("expected an element Piece");
+    if (!grid.child("Piece")) in_.fail_whole("expected an element Piece");
     for (const pugi::xml_node piece : grid.children("Piece")) read_piece(piece);
   }
 
@@ -72,9 +94,9 @@ class VtuReader {
     std::string head;
     if (const std::size_t appended = text.find("<AppendedData"); appended != std::string_view::npos) {
       const std::size_t open = text.find('>', appended);
-      if (open == std::string_view::npos) in_.fail("the file ends inside the element AppendedData");
+      if (open == std::string_view::npos) in_.fail_whole("the file ends inside the element AppendedData");
       const std::size_t mark = text.find('_', open);
-      if (mark == std::string_view::npos) in_.fail("expected _ at the begin of the appended data");
+      if (mark == std::string_view::npos) in_.fail_whole("expected _ at the begin of the appended data");
       appended_ = text.substr(mark + 1);
       head = std::string(text.substr(0, open + 1)) + "</AppendedData></VTKFile>";
       text = head;
@@ -84,7 +106,8 @@ class VtuReader {
       const std::string_view encoding =
           document_.child("VTKFile").child("AppendedData").attribute("encoding").as_string("raw");
       appended_is_raw_ = encoding == "raw";
-      if (!appended_is_raw_ && encoding != "base64") in_.fail("expected appended data encoded raw or base64");
+      if (!appended_is_raw_ && encoding != "base64")
+        in_.fail_whole("expected appended data encoded raw or base64");
       return;
     }
     Cursor place = in_;
@@ -96,12 +119,13 @@ class VtuReader {
     const auto num_nodes = static_cast<Index>(count(piece, "NumberOfPoints"));
     const auto num_cells = static_cast<Index>(count(piece, "NumberOfCells"));
     const pugi::xml_node points = piece.child("Points").child("DataArray");
-    if (points.attribute("NumberOfComponents").as_int() != 3) in_.fail("expected points of 3 components");
+    if (points.attribute("NumberOfComponents").as_int() != 3)
+      in_.fail_whole("expected points of 3 components");
     const std::vector<double> coordinates = numbers<double>(points, "Points");
     if (num_nodes > static_cast<Index>(coordinates.size()) ||
         3 * num_nodes != static_cast<Index>(coordinates.size()))
-      in_.fail("expected " + std::to_string(num_nodes) + " points, found " +
-               std::to_string(coordinates.size()) + " coordinates");
+      in_.fail_whole("expected " + std::to_string(num_nodes) + " points, found " +
+                     std::to_string(coordinates.size()) + " coordinates");
     const auto first_node = static_cast<Index>(mesh_.nodes.size());
     for (Index v = 0; v < num_nodes; ++v) mesh_.nodes.emplace_back(Point::Map(&coordinates[3 * v]));
 
@@ -114,8 +138,8 @@ class VtuReader {
     }
     cells.offsets.insert(cells.offsets.begin(), 0);
     if (static_cast<Index>(cells.types.size()) != num_cells)
-      in_.fail("expected " + std::to_string(num_cells) + " cell types, found " +
-               std::to_string(cells.types.size()));
+      in_.fail_whole("expected " + std::to_string(num_cells) + " cell types, found " +
+                     std::to_string(cells.types.size()));
     for (const pugi::xml_node array : piece.child("CellData").children("DataArray")) {
       const std::string_view name = array.attribute("Name").value();
       if (!is_region_array(name)) continue;
@@ -130,9 +154,9 @@ class VtuReader {
   std::uint64_t count(const pugi::xml_node& piece, const char* name) const {
     Cursor value(in_.name() + ", attribute " + name, piece.attribute(name).value());
     const std::int64_t count = value.integer("a count");
-    if (count < 0) value.fail("expected a count, found a negative number");
-    if (static_cast<std::uint64_t>(count) > 1100 * in_.bytes().size())  // zlib shrinks to 1/1032 at best
-      value.fail("announces " + std::to_string(count) + " items, the file cannot hold them");
+    if (count < 0) value.fail_whole("expected a count, found a negative number");
+    if (static_cast<std::uint64_t>(count) > max_compression * in_.bytes().size())
+      value.fail_whole("announces " + std::to_string(count) + " items, the file cannot hold them");
     return static_cast<std::uint64_t>(count);
   }
 
@@ -151,14 +175,15 @@ class VtuReader {
     }
     std::string bytes;
     if (format == "binary") {
-      bytes = decode(text.bytes(), /*is_raw=*/false, text);
+      bytes = decode({text.name(), text.bytes(), /*is_raw=*/false});
     } else if (format == "appended") {
       const std::uint64_t offset = array.attribute("offset").as_ullong();
       if (offset >= appended_.size())
-        text.fail("begins at " + std::to_string(offset) + ", behind the appended data");
-      bytes = decode(appended_.substr(offset), appended_is_raw_, text);
+        text.fail_whole("begins at " + std::to_string(offset) + ", behind the appended data");
+      bytes = decode({text.name(), appended_.substr(offset), appended_is_raw_});
     } else {
-      text.fail("expected the format ascii, binary or appended, found " + std::string(format.substr(0, 40)));
+      text.fail_whole("expected the format ascii, binary or appended, found " +
+                      std::string(format.substr(0, 40)));
     }
     return convert<Number>(bytes, array.attribute("type").value(), text);
   }
@@ -166,67 +191,47 @@ class VtuReader {
   /// Header words, each UInt32 or UInt64: the number of bytes, then these; or, compressed: the number of
   /// blocks, bytes of a full block, bytes of the last one if it is not full, compressed bytes of each; then
   /// the blocks.
-  std::string decode(std::string_view stored, bool is_raw, const Cursor& array) const {
-    const auto bytes_from = [&](std::size_t at, std::size_t count) -> std::string {
-      if (is_raw) {
-        if (at > stored.size() || count > stored.size() - at) array.fail("the file ends inside the array");
-        return std::string(stored.substr(at, count));
-      }
-      if (at / 3 * 4 > stored.size() || count / 4 * 3 > stored.size())
-        array.fail("the base64 data ends too early");
-      std::optional<std::string> decoded = decode_base64(stored, at + count);
-      if (!decoded) array.fail("expected base64 digits");
-      if (decoded->size() < at + count) array.fail("the base64 data ends too early");
-      return decoded->substr(at);
-    };
-    const auto header_words = [&](std::uint64_t count) {
-      if (count > stored.size())
-        array.fail("announces " + std::to_string(count) + " blocks, more than can follow");
-      const std::string bytes = bytes_from(0, count * header_size_);
-      Cursor in(array.name(), bytes);
-      in.set_binary(order_);
-      std::vector<std::uint64_t> words(count);
-      for (std::uint64_t& word : words)
-        word = header_size_ == 8 ? in.take<std::uint64_t>("a header") : in.take<std::uint32_t>("a header");
-      return words;
-    };
-    if (!is_compressed_) {
-      const std::uint64_t size = header_words(1)[0];
-      if (size > stored.size())
-        array.fail("announces " + std::to_string(size) + " bytes, more than can follow");
-      return bytes_from(header_size_, size);
-    }
-    const std::uint64_t num_blocks = header_words(1)[0];
-    if (num_blocks == 0) return {};
-    if (num_blocks > stored.size())
-      array.fail("announces " + std::to_string(num_blocks) + " blocks, more than can follow");
-    const std::vector<std::uint64_t> header = header_words(3 + num_blocks);
+  std::string decode(const StoredBytes& stored) const {
+    const std::uint64_t first = header_words(stored, 1)[0];
+    if (!is_compressed_) return stored.from(header_size_, first);
+    if (first == 0) return {};
+    if (first > stored.text.size())
+      stored.fail("announces " + std::to_string(first) + " blocks, more than can follow");
+    const std::vector<std::uint64_t> header = header_words(stored, 3 + first);
+    std::string bytes;
+    std::size_t at = header.size() * header_size_;
     std::uint64_t total = 0;
     for (std::size_t k = 3; k < header.size(); ++k) {
-      if (header[k] > stored.size())
-        array.fail("announces a block of " + std::to_string(header[k]) + " bytes, more than can follow");
-      total += header[k];
+      const std::uint64_t limit = stored.text.size();
+      if (header[k] > limit || (total += header[k]) > limit)
+        stored.fail("announces blocks of " + std::to_string(header[k]) + " bytes, more than can follow");
     }
-    if (total > stored.size())
-      array.fail("announces " + std::to_string(total) + " bytes, more than can follow");
-    // Compressed data begins on a fresh base64 group, which bytes_from resolves: padding adds no bytes.
-    const std::string packed = bytes_from(header.size() * header_size_, total);
-    std::string bytes;
-    std::size_t at = 0;
+    const std::string packed = stored.from(at, total);
+    at = 0;
     for (std::size_t k = 3; k < header.size(); ++k) {
       const bool is_last = k + 1 == header.size();
       const std::uint64_t size = is_last && header[2] != 0 ? header[2] : header[1];
-      if (size > 1100 * header[k] + 64)
-        array.fail("announces a block of " + std::to_string(size) + " bytes, more than it can hold");
+      if (size > max_compression * header[k] + 64)
+        stored.fail("announces a block of " + std::to_string(size) + " bytes, more than it can hold");
       const std::size_t before = bytes.size();
       bytes.resize(before + size);
       uLongf unpacked = size;
       const int status = uncompress(reinterpret_cast<Bytef*>(bytes.data() + before), &unpacked,
                                     reinterpret_cast<const Bytef*>(packed.data() + at), header[k]);
-      if (status != Z_OK || unpacked != size) array.fail("the compressed data is damaged");
+      if (status != Z_OK || unpacked != size) stored.fail("the compressed data is damaged");
       at += header[k];
     }
     return bytes;
+  }
+
+  std::vector<std::uint64_t> header_words(const StoredBytes& stored, std::uint64_t count) const {
+    const std::string bytes = stored.from(0, count * header_size_);
+    Cursor in(stored.name, bytes);
+    in.set_binary(order_);
+    std::vector<std::uint64_t> words(count);
+    for (std::uint64_t& word : words)
+      word = header_size_ == 8 ? in.take<std::uint64_t>("a header") : in.take<std::uint32_t>("a header");
+    return words;
   }
 
   template <typename Number>
@@ -234,7 +239,7 @@ class VtuReader {
     Cursor in(array.name(), bytes);
     in.set_binary(order_);
     const auto take = [&]<typename Stored>(Stored) {
-      if (bytes.size() % sizeof(Stored) != 0) array.fail("holds a broken number");
+      if (bytes.size() % sizeof(Stored) != 0) array.fail_whole("holds a broken number");
       std::vector<Number> values(bytes.size() / sizeof(Stored));
       for (Number& value : values) value = static_cast<Number>(in.template take<Stored>("numbers"));
       return values;
@@ -250,7 +255,7 @@ class VtuReader {
     if (type == "Int32") return take(std::int32_t{});
     if (type == "UInt32") return take(std::uint32_t{});
     if (type == "Int64" || type == "UInt64") return take(std::int64_t{});
-    array.fail("numbers of type \"" + std::string(type.substr(0, 40)) + "\" are not expected here");
+    array.fail_whole("numbers of type \"" + std::string(type.substr(0, 40)) + "\" are not expected here");
   }
 
   const Cursor& in_;

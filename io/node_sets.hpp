@@ -10,9 +10,9 @@
 namespace supple {
 
 /// Nodes on one side of a plane: an axis, one of < <= > >=, and a coordinate [m] or a share of the bounding
-/// box along that axis, counted from its lower end: "y<4%", "x >= 0.25". \return ascending node indices, at
-/// least one. \throws InputError naming the rule if it has another form or selects
-///   no node.
+/// box along that axis, counted from its lower end: "y<4%", "x >= 0.25".
+/// \return ascending node indices, at least one.
+/// \throws InputError naming the rule if it has another form or selects no node.
 std::vector<Index> select_nodes(const TetMesh& mesh, std::string_view rule);
 
 /// Nodes in a closed box between two corners [m]: "xmin,ymin,zmin:xmax,ymax,zmax".
@@ -24,8 +24,8 @@ std::vector<Index> nodes_in_box(const TetMesh& mesh, std::string_view box);
 std::vector<Index> nodes_of_region(const TetMesh& mesh, std::string_view region);
 
 /// Node indices from a text file: counted from 0, one a line; '#' begins a comment.
-/// \return ascending, each once. \throws InputError with the line if one is not in the mesh; or if there is
-/// none.
+/// \return ascending, each once.
+/// \throws InputError with the line if one is not in the mesh; or if the file names none.
 std::vector<Index> read_node_set(const TetMesh& mesh, const std::filesystem::path& path);
 
 }  // namespace supple

@@ -32,8 +32,8 @@ struct TetMesh {
 double tet_volume(const TetMesh& mesh, Index e);
 
 /// 1 if tet e is positively oriented, −1 if reversed, 0 if so flat that rounding may decide its sign.
-/// Relative to the size of the tet, so meshes in micrometres and in kilometres are judged alike. \see
-/// Shewchuk 1997, Sec. 4.3.
+/// Relative to the size of the tet, so meshes in micrometres and in kilometres are judged alike.
+/// \see Shewchuk 1997, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates".
 int tet_orientation(const TetMesh& mesh, Index e);
 
 /// 3 inradius / circumradius of tet e: 1 if regular, 0 if flat.
@@ -45,8 +45,8 @@ struct MeshNumbers {
 };
 
 /// Makes sure that a mesh is fit for elasticity: keeps what TetMesh promises.
-/// \throws std::invalid_argument that names the first tet, node or face at fault. \note O(n + m log k), k the
-/// largest number of tets at a node.
+/// \throws std::invalid_argument that names the first tet, node or face at fault.
+/// \note O(n + m log k), k the largest number of tets at a node.
 void check_mesh(const TetMesh& mesh, const MeshNumbers& numbers = {});
 
 /// The two corners of the axis-aligned bounding box of all nodes [m]; its diagonal is `extent().norm()`.
