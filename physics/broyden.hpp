@@ -31,12 +31,13 @@ BroydenReport broyden_solve(O& objective, SpdSolver<typename O::MatrixType>& sol
   BroydenReport report;
   Vector g(u.size()), g_trial(u.size());
   objective.gradient(u, g);
-  report.residual = detail::relative(g.norm(), objective.scale(u));
   typename O::MatrixType H;
   std::vector<Vector> steps;  // s_0 … s_k since the last refresh
   std::vector<double> squared_norms;
-  double first_residual = report.residual;
+  // Progress is judged by ‖g‖ itself: far away the scale grows as fast, and ‖g‖ / scale tells nothing.
+  double norm = g.norm(), first_norm = norm, scale = objective.scale(u);
   for (;;) {
+    report.residual = detail::relative(norm, scale);
     if (!std::isfinite(report.residual)) return report.status = Status::NotFinite, report;
     if (report.residual <= options.tolerance) return report.status = Status::Converged, report;
     if (report.iterations >= options.max_iterations) return report.status = Status::MaxIterations, report;
@@ -48,34 +49,36 @@ BroydenReport broyden_solve(O& objective, SpdSolver<typename O::MatrixType>& sol
     if (!steps.empty()) step /= 1 - steps.back().dot(step) / squared_norms.back();
     const Vector trial = u + step;
     objective.gradient(trial, g_trial);
-    const double residual = detail::relative(g_trial.norm(), objective.scale(trial));
+    const double trial_norm = g_trial.norm(), trial_scale = objective.scale(trial);
+    const double target = options.tolerance * trial_scale;
 
     const double taken = static_cast<double>(steps.size()) + 1;
-    const double rate =
-        std::log(residual / first_residual) / taken;  // of the logarithm of the residual, per iteration
+    const double rate = std::log(trial_norm / first_norm) / taken;  // of the logarithm of ‖g‖, per iteration
     const bool slow =
-        !(residual < 2 * report.residual) ||
-        (taken >= 2 && !(std::log(options.tolerance / residual) / rate <= options.refresh_cost && rate < 0));
-    if (!slow || residual <= options.tolerance) {
+        !(trial_norm < 2 * norm) ||
+        (taken >= 2 && !(std::log(target / trial_norm) / rate <= options.refresh_cost && rate < 0));
+    if (!slow || trial_norm <= target) {
       u = trial;
       g = g_trial;
-      report.residual = residual;
+      norm = trial_norm;
+      scale = trial_scale;
       squared_norms.push_back(step.squaredNorm());
       steps.push_back(std::move(step));
       continue;
     }
-    if (residual < report.residual) {
+    if (trial_norm < norm) {
       u = trial;
       g = g_trial;
     }
-    if (!detail::newton_step(objective, solver, H, u, g)) {
-      objective.gradient(u, g);
-      report.residual = detail::relative(g.norm(), objective.scale(u));
+    const bool decreased = detail::newton_step(objective, solver, H, u, g);
+    objective.gradient(u, g);
+    norm = first_norm = g.norm();
+    scale = objective.scale(u);
+    if (!decreased) {
+      report.residual = detail::relative(norm, scale);
       return report.status = Status::Stagnated, report;
     }
     ++report.refreshes;
-    objective.gradient(u, g);
-    report.residual = first_residual = detail::relative(g.norm(), objective.scale(u));
     steps.clear();
     squared_norms.clear();
   }
