@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <limits>
 
 namespace supple {
 
@@ -43,8 +44,8 @@ bool newton_step(O& objective, SpdSolver<typename O::MatrixType>& solver, typena
   const Vector& metric = objective.metric();
   double shift = 0;
   while (!solver.factorize(H)) {
-    const double more = shift == 0 ? 1e-3 * std::abs(H.diagonal().sum()) / metric.sum() : 9 * shift;
-    if (!std::isfinite(more) || shift > 1e12 * std::abs(more)) return false;
+    const double more = shift == 0 ? 2e-3 * H.norm() / metric.norm() : 9 * shift;
+    if (!(more > 0) || !std::isfinite(more)) return false;
     add_diagonal(H, more * metric);
     shift += more;
   }
@@ -61,7 +62,8 @@ bool newton_step(O& objective, SpdSolver<typename O::MatrixType>& solver, typena
     return true;
   }
   const double value = objective.value(u);
-  for (double t = 1; t > 1e-10; t *= 0.5) {
+  const double rounding = std::numeric_limits<double>::epsilon() * std::abs(value);
+  for (double t = 1; t > 1e-10 && -t * slope > rounding; t *= 0.5) {
     trial = u + t * step;
     if (objective.value(trial) <= value + 1e-4 * t * slope) {  // false for NaN
       u.swap(trial);
