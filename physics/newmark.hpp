@@ -32,8 +32,10 @@ struct NewmarkOptions {
   double beta = 0.25, gamma = 0.5;  ///< average acceleration; γ > ½ adds numerical damping, at first order
   RayleighDamping damping = {};
   NonlinearSolver solver = NonlinearSolver::Newton;
-  double tolerance =
-      1e-6;  ///< ‖M a + D v + f(u) − f_ext‖ against the largest of these terms, Euclidean norms
+  /// ‖M a + D v + f(u) − f_ext‖ against the largest of these terms, Euclidean norms; the pull −k u of springs
+  /// counts with f(u), the pull k u* of their targets with f_ext. What remains of these terms by rounding
+  /// alone counts as converged: a body at rest somewhere has no other forces.
+  double tolerance = 1e-6;
   Index max_iterations = 60;  ///< of the nonlinear solver in a step
 };
 
@@ -55,10 +57,13 @@ class Newmark {
       : system_(system), h_(h), options_(options), step_(system, h, options) {
     require(std::isfinite(h) && h > 0, "time step is " + std::to_string(h) + " s, expected > 0");
     require(options.beta > 0 && options.gamma > 0, "Newmark's beta and gamma have to be > 0 (implicit)");
+    require(options.tolerance > 0,
+            "Newmark's tolerance is " + std::to_string(options.tolerance) + ", expected > 0");
   }
 
   /// The acceleration that u and v imply under this load; call it after setting a state by hand.
   void balance(const AffineLoad<MatrixType>& load, State& state) const {
+    check(load, state.u, state.v);
     Vector r(system_.dim());
     system_.force(state.u, r);
     if (load.has_stiffness()) r += load.stiffness * state.u;
@@ -68,20 +73,14 @@ class Newmark {
 
   /// One time step under a load that is evaluated at its end.
   StepReport step(const AffineLoad<MatrixType>& load, State& state) {
-    require_size("load.force", load.force.size(), system_.dim());
+    check(load, state.u, state.v);
+    require_size("state.a", state.a.size(), system_.dim());
     step_.begin(state, load);
     Vector u = state.u + h_ * state.v + 0.5 * h_ * h_ * state.a;
-    StepReport report;
-    if (options_.solver == NonlinearSolver::Newton) {
-      static_cast<Report&>(report) = newton_minimize(
-          step_, solver_, u, {.tolerance = options_.tolerance, .max_iterations = options_.max_iterations});
-      report.refreshes = report.iterations;
-    } else {
-      prepare_rest_jacobian(load);
-      const BroydenReport broyden = broyden_solve(
-          step_, solver_, u, {.tolerance = options_.tolerance, .max_iterations = options_.max_iterations});
-      static_cast<Report&>(report) = broyden;
-      report.refreshes = broyden.refreshes;
+    StepReport report = solve(load, u);
+    if (report.status == Status::NotFinite) {  // the prediction may leave the domain of the energy
+      u = state.u;
+      report = solve(load, u);
     }
     if (report.status == Status::NotFinite) return report;
     const Vector a = step_.acceleration(u);
@@ -110,7 +109,9 @@ class Newmark {
           h_(h),
           options_(options),
           c_m_(1 / (options.beta * h * h)),
-          c_d_(options.gamma / (options.beta * h)) {}
+          c_d_(options.gamma / (options.beta * h)),
+          rounding_(8 * std::numeric_limits<double>::epsilon() *
+                    (c_m_ * system.mass() + system.rest_stiffness().diagonal())) {}
 
     void begin(const State& state, const AffineLoad<MatrixType>& load) {
       load_ = &load;
@@ -135,9 +136,12 @@ class Newmark {
       if (load_->has_stiffness()) g += load_->stiffness * u;
       scale_ = std::max(g.norm(), load_->force.norm());
       const Vector inertia = c_m_ * system_.mass().cwiseProduct(u - u_tilde_);
-      scale_ = std::max(scale_, inertia.norm());
+      scale_ = std::max({scale_, inertia.norm(), rounding_.cwiseProduct(u).norm() / options_.tolerance});
       g += inertia - load_->force;
-      if (damped()) g += damping_force_ + c_d_ * damp(u - u_tilde_);
+      if (!damped()) return;
+      const Vector damping = damping_force_ + c_d_ * damp(u - u_tilde_);
+      scale_ = std::max(scale_, damping.norm());
+      g += damping;
     }
 
     void hessian(VectorIn u, MatrixType& H) const {
@@ -166,12 +170,34 @@ class Newmark {
     double h_;
     NewmarkOptions options_;
     double c_m_, c_d_;
+    Vector rounding_;  // of the forces, relative to the displacements
     const AffineLoad<MatrixType>* load_ = nullptr;
     Vector u_tilde_, v_tilde_, damping_force_;
     double scale_ = 0;
   };
 
   bool damped() const { return step_.damped(); }
+
+  void check(const AffineLoad<MatrixType>& load, VectorIn u, VectorIn v) const {
+    require_size("load.force", load.force.size(), system_.dim());
+    if (load.has_stiffness()) require_size("load.stiffness", load.stiffness.rows(), system_.dim());
+    require_size("state.u", u.size(), system_.dim());
+    require_size("state.v", v.size(), system_.dim());
+  }
+
+  /// From u to the displacements at the end of the step.
+  StepReport solve(const AffineLoad<MatrixType>& load, Vector& u) {
+    if (options_.solver == NonlinearSolver::Newton) {
+      const Report newton = newton_minimize(
+          step_, solver_, u, {.tolerance = options_.tolerance, .max_iterations = options_.max_iterations});
+      return {newton, newton.iterations};
+    }
+    prepare_rest_jacobian(load);
+    const BroydenReport broyden = broyden_solve(
+        step_, solver_, u, {.tolerance = options_.tolerance, .max_iterations = options_.max_iterations});
+    if (broyden.status == Status::Stagnated) prepared_ = false;  // its last factorisation may have failed
+    return {broyden, broyden.refreshes};
+  }
 
   /// The solver starts from the Jacobian at rest, and again when the springs of the load have changed.
   void prepare_rest_jacobian(const AffineLoad<MatrixType>& load) {
