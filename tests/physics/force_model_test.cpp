@@ -1,0 +1,13 @@
+#include <tests/conformance/force_model_conformance.hpp>
+#include <tests/support/force_models.hpp>
+
+namespace supple::test {
+
+INSTANTIATE_TYPED_TEST_SUITE_P(StVenantKirchhoffTets, ForceModelConformance, TetBar<StVenantKirchhoff>);
+INSTANTIATE_TYPED_TEST_SUITE_P(MooneyRivlinTets, ForceModelConformance, TetBar<MooneyRivlin>);
+INSTANTIATE_TYPED_TEST_SUITE_P(Springs, ForceModelConformance, SpringBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(Oscillators, ForceModelConformance, DuffingSet);
+
+static_assert(PackableForceModel<TetElasticity<MooneyRivlin>> && !PackableForceModel<SpringNetwork>);
+
+}  // namespace supple::test

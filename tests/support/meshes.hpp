@@ -1,0 +1,84 @@
+#pragma once
+/// \file Small meshes made by rule.
+
+#include <core/random.hpp>
+#include <physics/tet_mesh.hpp>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace supple::test {
+
+/// The tet (0, e₁, e₂, e₃) · edge: volume edge³ / 6.
+inline TetMesh single_tet(double edge = 1) {
+  TetMesh mesh;
+  mesh.nodes = Points::Zero(4, 3);
+  for (int a = 0; a < 3; ++a) mesh.nodes(a + 1, a) = edge;
+  mesh.tets = {{0, 1, 2, 3}};
+  return mesh;
+}
+
+/// A box of nx × ny × nz cubes of size `edge` [m], each cut into six tets around its diagonal (Kuhn 1960).
+/// Node (i, j, k) is number i + (nx + 1) (j + (ny + 1) k), at edge · (i, j, k).
+inline TetMesh kuhn_box(Index nx, Index ny, Index nz, double edge = 0.1) {
+  TetMesh mesh;
+  const auto node = [&](const std::array<Index, 3>& i) { return i[0] + (nx + 1) * (i[1] + (ny + 1) * i[2]); };
+  mesh.nodes.resize((nx + 1) * (ny + 1) * (nz + 1), 3);
+  for (Index k = 0; k <= nz; ++k)
+    for (Index j = 0; j <= ny; ++j)
+      for (Index i = 0; i <= nx; ++i)
+        mesh.nodes.row(node({i, j, k})) =
+            edge * Eigen::RowVector3d(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
+  for (Index k = 0; k < nz; ++k)
+    for (Index j = 0; j < ny; ++j)
+      for (Index i = 0; i < nx; ++i) {
+        std::array<int, 3> axes{0, 1, 2};
+        do {  // along the axes in this order from (i, j, k) to the opposite corner
+          std::array<Index, 3> corner{i, j, k};
+          Tet tet{node(corner)};
+          for (int step = 0; step < 3; ++step) {
+            ++corner[axes[step]];
+            tet[step + 1] = node(corner);
+          }
+          const bool odd = ((axes[0] > axes[1]) + (axes[0] > axes[2]) + (axes[1] > axes[2])) % 2 == 1;
+          if (odd) std::swap(tet[2], tet[3]);
+          mesh.tets.push_back(tet);
+        } while (std::next_permutation(axes.begin(), axes.end()));
+      }
+  return mesh;
+}
+
+/// Every coordinate moved by up to `amplitude` [m] either way; keep it well below the height of the tets.
+inline TetMesh perturbed(TetMesh mesh, double amplitude, std::uint64_t seed) {
+  Random random(seed);
+  for (Index k = 0; k < mesh.nodes.size(); ++k)
+    mesh.nodes.data()[k] += amplitude * (2 * random.uniform() - 1);
+  return mesh;
+}
+
+template <typename Predicate>
+std::vector<Index> nodes_where(const TetMesh& mesh, const Predicate& holds) {
+  std::vector<Index> nodes;
+  for (Index v = 0; v < mesh.num_nodes(); ++v)
+    if (holds(Point(mesh.nodes.row(v)))) nodes.push_back(v);
+  return nodes;
+}
+
+inline std::vector<Index> boundary_nodes(const TetMesh& mesh) {
+  std::vector<Index> nodes;
+  for (const Triangle& face : boundary_faces(mesh)) nodes.insert(nodes.end(), face.begin(), face.end());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+/// Displacements of all nodes (3 n) under x ↦ F x + t.
+inline Vector affine_displacement(const Points& nodes, const Matrix3<double>& F,
+                                  const Point& t = Point::Zero()) {
+  const Points moved = (nodes * F.transpose()).rowwise() + t.transpose();
+  const Points u = moved - nodes;
+  return Eigen::Map<const Vector>(u.data(), u.size());
+}
+
+}  // namespace supple::test
