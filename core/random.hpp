@@ -20,7 +20,7 @@ class Random {
   /// Uniform in 0 … count − 1; count ≥ 1.
   Index below(Index count) {
     return static_cast<Index>(
-        (static_cast<unsigned __int128>(engine_()) * static_cast<std::uint64_t>(count)) >> 64);
+        (static_cast<Wide>(engine_()) * static_cast<std::uint64_t>(count)) >> 64);
   }
   /// Standard normal (Box and Muller 1958).
   double normal() {
@@ -39,6 +39,8 @@ class Random {
   }
 
  private:
+  __extension__ using Wide = unsigned __int128;
+
   std::mt19937_64 engine_;
 };
 

@@ -1,0 +1,55 @@
+#pragma once
+/// \file A reduced model as data: what `reduce` makes, files keep, and simulations load.
+
+#include <physics/solid.hpp>
+#include <reduction/reduced_system.hpp>
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <variant>
+
+namespace supple {
+
+struct ReducedModel {
+  Solid solid;
+  std::variant<std::shared_ptr<const NodalBasis>, std::shared_ptr<const DenseBasis>> subspace;
+  std::vector<Index> indices;  ///< selected tets, ascending
+  Vector weights;              ///< of the selected tets, > 0
+  Matrix rest_stiffness;       ///< UᵀK(0)U, exact, d × d
+  /// How it was made: options, seed, version, errors. Free text; the file keeps it.
+  std::map<std::string, std::string> provenance;
+
+  Index dim() const {
+    return std::visit([](const auto& basis) { return basis->dim(); }, subspace);
+  }
+  const Vector& omega() const {  ///< of the modes it was made from [rad/s]
+    return std::visit([](const auto& basis) -> const Vector& { return basis->report.omega; }, subspace);
+  }
+};
+
+/// Calls visit(system) with the ReducedSystem of the model; the system lives during the call.
+template <typename Visitor>
+decltype(auto) with_reduced_system(const ReducedModel& model, Visitor&& visit) {
+  return with_law(model.solid.law, [&]<template <typename> class Material>() -> decltype(auto) {
+    using Model = TetElasticity<Material>;
+    return std::visit(
+        [&]<typename S>(const std::shared_ptr<const S>& subspace) -> decltype(auto) {
+          const ReducedSystem<Model, S> system(
+              std::make_shared<const Model>(make_model<Material>(model.solid)), subspace, model.indices,
+              model.weights, model.rest_stiffness, model.solid.nodal_mass());
+          return visit(system);
+        },
+        model.subspace);
+  });
+}
+
+/// Writes one file in the safetensors layout (see core/tensor_file.hpp), in one step; docs/model-file.md
+/// lists its arrays.
+void save_model(const std::filesystem::path& path, const ReducedModel& model);
+
+/// \throws InputError naming the file and what is wrong with it: not a model, another version, damaged,
+/// inconsistent.
+ReducedModel load_model(const std::filesystem::path& path);
+
+}  // namespace supple

@@ -1,0 +1,22 @@
+#pragma once
+/// \file Selectors by name, as commands and files know them.
+
+#include <sparse/any_problem.hpp>
+#include <sparse/selection.hpp>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace supple {
+
+/// Names that select_by_name understands, the default first.
+const std::vector<std::string>& selector_names();
+
+/// Runs the selector of this name with its default options and this seed.
+/// \throws std::invalid_argument for a name that is not known, listing those that are.
+Selection select_by_name(std::string_view name, const AnyProblem& problem, const SelectionRequest& request,
+                         std::uint64_t seed);
+
+}  // namespace supple
