@@ -158,11 +158,11 @@ Vector DenseProblem::squared_norms() const {
   return supple::squared_norms(A_);
 }
 
-DenseProblem DenseProblem::restricted_to(std::span<const Index> groups) const {
+DenseRows DenseProblem::restricted_to(std::span<const Index> groups) const {
   std::vector<Index> kept;
   for (Index group : groups)
     for (Index i = 0; i < group_size_; ++i) kept.push_back(group * group_size_ + i);
-  return {A_(kept, Eigen::all), b_(kept), group_size_};
+  return {A_, b_, std::move(kept)};
 }
 
 }  // namespace supple

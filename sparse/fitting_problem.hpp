@@ -108,6 +108,25 @@ class GatheredColumns {
 };
 static_assert(ColumnBlock<GatheredColumns>);
 
+/// Some rows of a matrix in memory.
+class DenseRows {
+ public:
+  /// A must outlive it.
+  DenseRows(const Matrix& A, VectorIn b, std::vector<Index> rows)
+      : A_(&A), rows_(std::move(rows)), b_(b(rows_)) {}
+
+  Index rows() const { return b_.size(); }
+  Index cols() const { return A_->cols(); }
+  const Vector& rhs() const { return b_; }
+  void column(Index j, VectorOut out) const { out = A_->col(j)(rows_); }
+
+ private:
+  const Matrix* A_;
+  std::vector<Index> rows_;
+  Vector b_;
+};
+static_assert(FittingProblem<DenseRows>);
+
 /// A and b in memory. Rows may be grouped: group_size consecutive rows stand or fall together.
 class DenseProblem {
  public:
@@ -123,7 +142,7 @@ class DenseProblem {
   Vector transpose_times(VectorIn r) const;
   Vector squared_norms() const;
   Index num_groups() const { return rows() / group_size_; }
-  DenseProblem restricted_to(std::span<const Index> groups) const;  ///< a copy
+  DenseRows restricted_to(std::span<const Index> groups) const;
 
  private:
   Matrix A_;

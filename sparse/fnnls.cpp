@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace supple {
@@ -46,6 +47,7 @@ struct Fit {
   }
 
   Index size() const { return c.size(); }
+  bool finite() const { return c.allFinite() && G.allFinite(); }
 
   bool add(Index i) {
     if (blocked[i] || !passive.factor.append(G(passive.indices, i))) {
@@ -195,6 +197,15 @@ struct Fit {
     }
   }
 
+  // Everything passive that may be.
+  void solve_all() {
+    std::vector<Index> all(size());
+    std::iota(all.begin(), all.end(), Index{0});
+    set_passive(std::move(all));
+    x = solve();
+    update_gradient();
+  }
+
   double kkt_residual() const {
     double worst = 0;
     for (Index i = 0; i < size(); ++i)
@@ -203,20 +214,27 @@ struct Fit {
   }
 };
 
+NnlsSolution not_finite(Fit&& fit) {
+  Report report;
+  report.status = Status::NotFinite;
+  return {Vector::Zero(fit.size()), std::move(fit.passive), report};
+}
+
+void require_normal_equations(MatrixIn gram, VectorIn atb) {
+  require_size("gram (columns)", gram.cols(), gram.rows());
+  require_size("atb", atb.size(), gram.cols());
+}
+
 }  // namespace
 
 NnlsSolution Fnnls::operator()(MatrixIn gram, VectorIn atb, std::span<const Index> start) const {
-  require_size("gram (columns)", gram.cols(), gram.rows());
-  require_size("atb", atb.size(), gram.cols());
+  require_normal_equations(gram, atb);
   for (Index i : start)
     require(0 <= i && i < gram.cols(),
             "passive holds " + std::to_string(i) + ", expected 0 to " + std::to_string(gram.cols() - 1));
   Fit fit(gram, atb, start);
+  if (!fit.finite()) return not_finite(std::move(fit));
   Report report;
-  if (!fit.c.allFinite() || !fit.G.allFinite()) {
-    report.status = Status::NotFinite;
-    return {Vector::Zero(atb.size()), std::move(fit.passive), report};
-  }
   const Index limit = max_iterations > 0 ? max_iterations : 3 * fit.size() + 30;
   const bool finished = fit.exchange_blocks(tolerance, report.iterations, limit) ||
                         fit.exchange_single(tolerance, report.iterations, limit);
@@ -225,6 +243,19 @@ NnlsSolution Fnnls::operator()(MatrixIn gram, VectorIn atb, std::span<const Inde
   report.status = report.residual <= tolerance ? Status::Converged
                   : finished                   ? Status::Stagnated
                                                : Status::MaxIterations;
+  Vector w = fit.x.cwiseProduct(fit.passive.scale);
+  return {std::move(w), std::move(fit.passive), report};
+}
+
+NnlsSolution least_squares(MatrixIn gram, VectorIn atb) {
+  require_normal_equations(gram, atb);
+  Fit fit(gram, atb, {});
+  if (!fit.finite()) return not_finite(std::move(fit));
+  fit.solve_all();
+  Report report;
+  report.iterations = 1;
+  report.residual = fit.scale_of_c > 0 ? fit.g.cwiseAbs().maxCoeff() / fit.scale_of_c : 0;
+  report.status = report.residual <= 1e-12 ? Status::Converged : Status::Stagnated;
   Vector w = fit.x.cwiseProduct(fit.passive.scale);
   return {std::move(w), std::move(fit.passive), report};
 }

@@ -2,6 +2,7 @@
 /// \file The projections H_s and H_s⁺ of iterative hard thresholding, as sets of positions.
 
 #include <core/types.hpp>
+#include <sparse/signs.hpp>
 
 #include <vector>
 
@@ -13,6 +14,10 @@ std::vector<Index> largest_positive(VectorIn x, Index count);
 
 /// Positions of the `count` entries of largest magnitude that are not zero, ascending: the support of H_s(x).
 std::vector<Index> largest_magnitude(VectorIn x, Index count);
+
+inline std::vector<Index> hard_threshold(Signs signs, VectorIn x, Index count) {
+  return signs == Signs::NonNegative ? largest_positive(x, count) : largest_magnitude(x, count);
+}
 
 /// The position of the largest positive entry in each of `groups` consecutive parts of x, as equal as can be;
 /// parts without a positive entry have none. Ascending. More groups than entries: one entry each.

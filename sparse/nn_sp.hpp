@@ -20,8 +20,8 @@ struct NnSp {
   Index max_iterations = 30;       ///< more still improves: 1.15 × less error for every doubling
   double candidates_per_size = 2;  ///< c/s; more costs more columns and gains little
   double added_per_size =
-      0.25;            ///< share of s that each iteration tries to exchange; 1: slower, and a little better
-  Index patience = 10; ///< stop after so many draws in a row that improve nothing
+      0.25;             ///< share of s that each iteration tries to exchange; 1: slower, and a little better
+  Index patience = 10;  ///< stop after so many draws in a row that improve nothing
   std::uint64_t seed = 0;
 
   template <FittingProblem P>
@@ -33,13 +33,13 @@ struct NnSp {
     Random random(seed);
 
     WorkingSet<P> S = run.start();
-    Vector w = S.fit().w;
+    Vector w = S.fit();
     Vector r = run.record(S, w);
     run.drop_unused(S, w);
 
     Index iterations = 0, unchanged = 0;
     const auto finish = [&](Status status, const char* reason) {
-      return run.finish(S, FinalWeights::NonNegative, status, iterations, reason);
+      return run.finish(S, status, iterations, reason);
     };
     for (; iterations < max_iterations; ++iterations) {
       if (run.met(tolerance)) return finish(Status::Converged, "target error reached");
@@ -47,14 +47,13 @@ struct NnSp {
 
       const Index old_size = S.size(), groups = s - old_size + added;
       const std::vector<Index> rest = run.rules.eligible_without(S.indices());
-      const Evaluated<P> drawn = run.evaluate(random.sample(rest, std::max(c, groups)));
-      const Vector cosines = improving(drawn.block.transpose_times(r), drawn.norms, run.b_norm()).cosines;
-      const std::vector<Index> entering = best_of_groups(cosines, groups);
-      if (entering.empty() && drawn.block.size() == static_cast<Index>(rest.size()))
+      const Scan<P> drawn = run.scan(random.sample(rest, std::max(c, groups)), r);
+      const std::vector<Index> entering = best_of_groups(drawn.cosines(), groups);
+      if (entering.empty() && drawn.size() == static_cast<Index>(rest.size()))
         return finish(Status::Converged, "no column improves the selection");
 
-      S.append(drawn.block.subset(entering));
-      Vector w_next = S.fit_on(all_positions(S.size()));
+      S.append(run.columns(drawn, entering));
+      Vector w_next = S.fit();
       if (static_cast<Index>(run.used_positions(S, w_next).size()) > s)
         w_next = S.fit_on(prune(S.gram(), w_next, s, run.must_keep(S)));
 

@@ -46,4 +46,8 @@ struct Fnnls {
   NnlsSolution operator()(MatrixIn gram, VectorIn atb, std::span<const Index> passive = {}) const;
 };
 
+/// Least squares without the sign: columns that to rounding depend on earlier ones get no weight.
+/// Residual as above, for gᵢ = 0. \note O(n³/3). \throws std::invalid_argument if sizes do not fit.
+NnlsSolution least_squares(MatrixIn gram, VectorIn atb);
+
 }  // namespace supple

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,17 +47,6 @@ struct Evaluated {
   Vector norms;
 };
 
-/// Correlations g_j = a_jᵀ r of columns with a residual, 0 where they are not positive by more than rounding:
-/// after an exact fit only rounding is left, and it must not choose columns.
-struct Improving {
-  Vector correlations;  ///< g_j
-  Vector cosines;       ///< g_j / ‖a_j‖
-};
-inline Improving improving(const Vector& g, const Vector& norms, double b_norm) {
-  const Eigen::Array<bool, Eigen::Dynamic, 1> matter = g.array() > 1e-13 * b_norm * norms.array();
-  return {matter.select(g, 0), matter.select(g.cwiseQuotient(norms), 0)};
-}
-
 /// factor · s, rounded up.
 inline Index share(double factor, Index s) {
   return static_cast<Index>(std::min(1e15, std::ceil(factor * static_cast<double>(s))));
@@ -77,9 +67,25 @@ inline std::vector<Index> sorted_union(std::vector<Index> a, const std::vector<I
   return a;
 }
 
-/// What finish() does with the weights of the best iterate: least squares once more, polished, with or
-/// without signs.
-enum class FinalWeights { NonNegative, Signed, AsTheyAre };
+/// Columns seen against a residual r.
+template <FittingProblem P>
+struct Scan {
+  std::vector<Index> indices;
+  /// g_j = a_jᵀ r, and 0 where that is rounding: after an exact fit nothing else is left, and it must not
+  /// choose.
+  Vector correlations;
+  Vector norms;  ///< ‖a_j‖
+  std::optional<ColumnsOf<P>>
+      block;  ///< the columns themselves, if they were evaluated and not too many to keep
+
+  Index size() const { return correlations.size(); }
+  Vector cosines() const {  ///< g_j / ‖a_j‖
+    return (correlations.array() != 0).select(correlations.cwiseQuotient(norms), 0);
+  }
+};
+
+/// What finish() does with the weights of the best iterate.
+enum class FinalWeights { Refitted, AsTheyAre };
 
 /// One run of a selector on a problem.
 template <FittingProblem P>
@@ -97,16 +103,61 @@ class SelectionRun {
   double error() const { return error_; }  ///< of the best iterate so far
   bool met(double tolerance) const { return error_ <= std::max({tolerance, request_.target_error, 1e-15}); }
 
+  /// What it means to have s columns: all that was asked for, unless that was an error.
+  Status status_at_size() const {
+    return request_.target_error > 0 && !met(0) ? Status::Stagnated : Status::Converged;
+  }
+
+  void account(Index columns) { columns_evaluated_ += columns; }  ///< evaluated elsewhere
+
   /// \throws InputError naming the column if one is not finite.
   Evaluated<P> evaluate(const std::vector<Index>& js) {
     columns_evaluated_ += static_cast<Index>(js.size());
     ColumnsOf<P> block = columns_of(problem_, std::span<const Index>(js));
     Vector norms = block.squared_norms().cwiseSqrt();
-    for (Index k = 0; k < norms.size(); ++k)
-      if (!std::isfinite(norms[k]))
-        throw InputError("column " + std::to_string(js[k]) +
-                         " of A has a norm that is not finite, expected finite numbers below 1e150");
+    for (Index k = 0; k < norms.size(); ++k) require_finite_norm(js[k], norms[k]);
     return {std::move(block), std::move(norms)};
+  }
+
+  /// Correlations of the columns js with r. Many columns are streamed, or left to the problem if it can do
+  /// without evaluating them; then none are kept.
+  Scan<P> scan(std::vector<Index> js, const Vector& r) {
+    Scan<P> result{std::move(js), {}, {}, {}};
+    const auto count = static_cast<Index>(result.indices.size());
+    if constexpr (FullGradientProblem<P>) {
+      if (2 * count > problem_.cols()) {
+        result.correlations = Vector(problem_.transpose_times(r))(result.indices);
+        result.norms = all_norms()(result.indices);
+        columns_evaluated_ += count;
+      }
+    }
+    if (result.norms.size() != count && count <= largest_block()) {
+      Evaluated<P> evaluated = evaluate(result.indices);
+      result.correlations = evaluated.block.transpose_times(r);
+      result.norms = std::move(evaluated.norms);
+      result.block = std::move(evaluated.block);
+    } else if (result.norms.size() != count) {
+      result.correlations.resize(count);
+      result.norms.resize(count);
+      for (Index begin = 0; begin < count; begin += largest_block()) {
+        const Index size = std::min(largest_block(), count - begin);
+        const auto first = result.indices.begin() + begin;
+        const Evaluated<P> evaluated = evaluate({first, first + size});
+        result.correlations.segment(begin, size) = evaluated.block.transpose_times(r);
+        result.norms.segment(begin, size) = evaluated.norms;
+      }
+    }
+    result.correlations = (result.correlations.array().abs() > 1e-13 * b_norm_ * result.norms.array())
+                              .select(result.correlations, 0);
+    return result;
+  }
+
+  /// The columns at these positions of a scan.
+  ColumnsOf<P> columns(const Scan<P>& scan, const std::vector<Index>& positions) {
+    if (scan.block) return scan.block->subset(positions);
+    std::vector<Index> indices;
+    for (Index k : positions) indices.push_back(scan.indices[k]);
+    return evaluate(indices).block;
   }
 
   /// The working set to begin with: must-keep and warm start.
@@ -153,7 +204,7 @@ class SelectionRun {
     step.seconds = stopwatch_.seconds();
     step.columns_evaluated = columns_evaluated_;
     history_.push_back(step);
-    if (error < error_ || history_.size() == 1) {
+    if (history_.size() == 1 || (error < error_ && step.size <= rules.size())) {
       error_ = error;
       best_indices_ = std::move(indices);
       best_weights_ = w(used);
@@ -167,12 +218,12 @@ class SelectionRun {
   }
 
   /// The best iterate, and its residual as A, w and b themselves have it.
-  Selection finish(WorkingSet<P>& working, FinalWeights weights, Status status, Index iterations,
-                   std::string stop_reason) {
+  Selection finish(WorkingSet<P>& working, Status status, Index iterations, std::string stop_reason,
+                   FinalWeights weights = FinalWeights::Refitted, Signs signs = Signs::NonNegative) {
     Vector w = restore_best(working);
-    if (weights == FinalWeights::NonNegative) {
-      NnlsSolution refitted = working.fit(used_positions(working, w));
-      working.polish(refitted);
+    if (weights == FinalWeights::Refitted) {
+      NnlsSolution refitted = working.fit(signs, used_positions(working, w));
+      working.polish(refitted, signs);
       if (working.residual(refitted.w).norm() <= working.residual(w).norm()) w = std::move(refitted.w);
       drop_unused(working, w);
     }
@@ -192,6 +243,26 @@ class SelectionRun {
   }
 
  private:
+  // So many columns are kept evaluated at a time: 512 MB of entries, or the problem's own representation.
+  Index largest_block() const {
+    if constexpr (BlockFittingProblem<P>) return 8192;
+    return std::max<Index>(64, (Index{1} << 26) / std::max<Index>(1, problem_.rows()));
+  }
+
+  const Vector& all_norms() {
+    if (all_norms_.size() == 0) {
+      all_norms_ = Vector(problem_.squared_norms()).cwiseSqrt();
+      for (Index j : rules.eligible()) require_finite_norm(j, all_norms_[j]);
+    }
+    return all_norms_;
+  }
+
+  static void require_finite_norm(Index j, double norm) {
+    if (!std::isfinite(norm))
+      throw InputError("column " + std::to_string(j) +
+                       " of A has a norm that is not finite, expected finite numbers below 1e150");
+  }
+
   double relative(double residual) const { return residual > 0 ? residual / b_norm_ : 0; }
 
   // Makes `working` hold the best iterate, ascending; what has left it meanwhile is evaluated again.
@@ -234,6 +305,7 @@ class SelectionRun {
   Index columns_evaluated_ = 0;
   std::vector<SelectionStep> history_;
   double error_ = 1;
+  Vector all_norms_;
   std::vector<Index> best_indices_;
   Vector best_weights_;
 };

@@ -3,6 +3,7 @@
 
 #include <sparse/fitting_problem.hpp>
 #include <sparse/nnls.hpp>
+#include <sparse/signs.hpp>
 
 #include <algorithm>
 #include <numeric>
@@ -63,9 +64,12 @@ class WorkingSet {
 
   Vector residual(VectorIn w) const { return problem_->rhs() - block_.times(w); }  ///< b − A_S w
 
-  /// Non-negative weights of the least-squares fit, starting from the positions `passive`.
-  NnlsSolution fit(std::span<const Index> passive = {}) const { return Fnnls{}(gram_, atb_, passive); }
-
+  /// Weights of the least-squares fit, with or without a sign; if with, started from the positions `passive`.
+  NnlsSolution fit(Signs signs, std::span<const Index> passive) const {
+    return signs == Signs::NonNegative ? Fnnls{}(gram_, atb_, passive) : least_squares(gram_, atb_);
+  }
+  /// Non-negative weights, started from all columns.
+  Vector fit() const { return fit(Signs::NonNegative, all_positions(size())).w; }
   /// The same with only the columns at these positions, started from all of them; 0 elsewhere.
   Vector fit_on(const std::vector<Index>& positions) const {
     Vector w = Vector::Zero(size());
@@ -77,12 +81,14 @@ class WorkingSet {
 
   /// Wins back digits that the normal equations have lost, by refinement with the residual of A itself
   /// (Björck 1987).
-  void polish(NnlsSolution& solution) const {
+  void polish(NnlsSolution& solution, Signs signs) const {
     for (int step = 0; step < 3; ++step) {
       const Vector correction = solution.passive.solve(block_.transpose_times(residual(solution.w)));
       if (correction.norm() <= 1e-14 * solution.w.norm()) return;
       const Vector w = solution.w + correction;
-      if (!(w.minCoeff() >= 0) || residual(w).norm() >= residual(solution.w).norm()) return;
+      if ((signs == Signs::NonNegative && !(w.minCoeff() >= 0)) ||
+          residual(w).norm() >= residual(solution.w).norm())
+        return;
       solution.w = w;
     }
   }

@@ -88,11 +88,14 @@ TEST(DenseProblem, MultipliesWithAllItsColumns) {
 }
 
 TEST(DenseProblem, RestrictsToGroupsOfRows) {
-  const Matrix B = gaussian(6, 3, 1);
-  const DenseProblem part = DenseProblem(B, B.col(0), 2).restricted_to(std::vector<Index>{2, 0});
-  EXPECT_EQ(part.matrix().topRows(2), B.middleRows(4, 2));
-  EXPECT_EQ(part.matrix().bottomRows(2), B.topRows(2));
-  EXPECT_EQ(part.rhs(), part.matrix().col(0));
+  const DenseProblem whole(A, dense.rhs(), 20);
+  ASSERT_EQ(whole.num_groups(), 3);
+  const DenseRows part = whole.restricted_to(std::vector<Index>{2, 0});
+  Matrix expected(40, A.cols());
+  expected << A.bottomRows(20), A.topRows(20);
+  expect_columns(columns_of(part, some), expected, some);
+  EXPECT_EQ(part.rhs().head(20), dense.rhs().tail(20));
+  EXPECT_EQ(part.rhs().tail(20), dense.rhs().head(20));
 }
 
 TEST(DenseProblem, RefusesWhatDoesNotFit) {

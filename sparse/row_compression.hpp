@@ -1,0 +1,178 @@
+#pragma once
+/// \file Choosing on fewer rows: seeded sketches of A and b, and the exact refit of what was chosen.
+
+#include <core/parallel.hpp>
+#include <core/random.hpp>
+#include <sparse/baselines.hpp>
+#include <sparse/selection_run.hpp>
+
+namespace supple {
+
+/// Few rows that stand for all of A and b: S A on some columns, and S b.
+struct CompressedRows {
+  Matrix A;
+  Vector b;
+  std::vector<Index> columns;  ///< the numbers of A's columns in the original
+};
+
+/// CountSketch: every row is added, with a random sign, to a random one of `rows` rows, which keeps inner
+/// products in the mean. \see Clarkson & Woodruff 2013.
+class CountSketch {
+ public:
+  /// \throws std::invalid_argument if rows < 1.
+  CountSketch(Index original_rows, Index rows, std::uint64_t seed);
+
+  Index rows() const { return rows_; }
+  void apply(VectorIn x, VectorOut out) const;  ///< out = S x
+
+ private:
+  Index rows_;
+  std::vector<Index> bucket_;
+  Vector sign_;
+};
+
+/// Calls visit(begin, A_B) for consecutive B = columns[begin], …, as many as make 128 MB.
+/// \throws InputError naming a column that is not finite.
+template <FittingProblem P, typename Visit>
+void visit_columns(const P& problem, const std::vector<Index>& columns, const Visit& visit) {
+  const auto count = static_cast<Index>(columns.size());
+  const Index width = std::max<Index>(16, (Index{1} << 24) / std::max<Index>(1, problem.rows()));
+  for (Index begin = 0; begin < count; begin += width) {
+    Matrix block(problem.rows(), std::min(width, count - begin));
+    parallel_ranges(block.cols(), 16, [&](Index first, Index last) {
+      for (Index k = first; k < last; ++k) {
+        problem.column(columns[begin + k], block.col(k));
+        if (!block.col(k).allFinite())
+          throw InputError("column " + std::to_string(columns[begin + k]) +
+                           " of A is not finite, expected finite numbers");
+      }
+    });
+    visit(begin, block);
+  }
+}
+
+/// \note evaluates each of the columns once; keeps sketch.rows() · |columns| numbers.
+template <FittingProblem P>
+CompressedRows sketch_rows(const CountSketch& sketch, const P& problem, const std::vector<Index>& columns) {
+  CompressedRows result{Matrix(sketch.rows(), static_cast<Index>(columns.size())), Vector(sketch.rows()),
+                        columns};
+  sketch.apply(problem.rhs(), result.b);
+  visit_columns(problem, columns, [&](Index begin, const Matrix& block) {
+    parallel_for(block.cols(), [&](Index k) { sketch.apply(block.col(k), result.A.col(begin + k)); });
+  });
+  return result;
+}
+
+/// The dominant left singular vectors of A, each scaled by the inverse of its singular value: S = Σ⁻¹ Uᵀ, so
+/// that the rows of S A are orthonormal. By a randomised range finder, in two passes over the columns. At
+/// most `rows` rows, fewer if A has less rank. \note rows · |columns| numbers.   \see Halko, Martinsson &
+/// Tropp 2011.
+template <FittingProblem P>
+CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem,
+                             const std::vector<Index>& columns);
+
+/// Runs `select` on compressed rows of the eligible columns, then fits the weights of what it chose to all
+/// rows. The history is that of the compressed problem; everything else in the report is exact.
+template <typename S, FittingProblem P>
+Selection select_on_rows(const CompressedRows& compressed, const S& select, const P& problem,
+                         const SelectionRequest& request);
+
+/// Chooses with `select` on a CountSketch of the rows, and fits the weights to all rows.
+/// \note every candidate column is evaluated once; rows · m numbers are kept.
+template <typename Selector>
+struct Sketched {
+  Selector select;
+  /// Rows of the sketch; 0: 8 s, at least 256. What is needed grows with s, not with the rows of A.
+  Index rows = 0;
+  std::uint64_t seed = 0;
+
+  template <FittingProblem P>
+  Selection operator()(const P& problem, const SelectionRequest& request) const {
+    require(rows >= 0, "rows is " + std::to_string(rows) + ", expected 0 (automatic) or more");
+    const SelectionRules rules(request, problem.cols(), problem.rhs());
+    const Index wanted = rows > 0 ? rows : std::max<Index>(256, 8 * rules.size());
+    const CountSketch sketch(problem.rows(), std::min(wanted, problem.rows()), seed);
+    return select_on_rows(sketch_rows(sketch, problem, rules.eligible()), select, problem, request);
+  }
+};
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// Orthonormal columns that span those of Y. \note O(rows cols²).
+Matrix orthonormalized(const Matrix& Y);
+/// Σ⁻¹ Uᵀ of J = U Σ Vᵀ, for the at most `rows` singular values above 1e-10 of the largest.
+Matrix whitening(const Matrix& J, Index rows);
+
+template <FittingProblem P>
+CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem,
+                             const std::vector<Index>& columns) {
+  const auto m = static_cast<Index>(columns.size());
+  const Index width = std::min({rows + 10, problem.rows(), m});
+  Random random(seed);
+  const Matrix omega = Matrix::NullaryExpr(m, width, [&] { return random.normal(); });
+  Matrix Y = Matrix::Zero(problem.rows(), width);
+  visit_columns(problem, columns, [&](Index begin, const Matrix& block) {
+    parallel_ranges(Y.rows(), 512, [&](Index first, Index last) {
+      Y.middleRows(first, last - first).noalias() +=
+          block.middleRows(first, last - first) * omega.middleRows(begin, block.cols());
+    });
+  });
+  const Matrix Q = orthonormalized(Y);
+  Matrix J(width, m);
+  visit_columns(problem, columns, [&](Index begin, const Matrix& block) {
+    parallel_ranges(block.cols(), 64, [&](Index first, Index last) {
+      J.middleCols(begin + first, last - first).noalias() =
+          Q.transpose() * block.middleCols(first, last - first);
+    });
+  });
+  const Matrix S = whitening(J, rows);
+  return {S * J, S * (Q.transpose() * problem.rhs()), columns};
+}
+
+template <typename S, FittingProblem P>
+Selection select_on_rows(const CompressedRows& compressed, const S& select, const P& problem,
+                         const SelectionRequest& request) {
+  SelectionRun<P> run(problem, request);
+  run.account(static_cast<Index>(compressed.columns.size()));
+  std::vector<Index> position(problem.cols(), -1);
+  for (std::size_t k = 0; k < compressed.columns.size(); ++k)
+    position[compressed.columns[k]] = static_cast<Index>(k);
+  const auto original = [&](const std::vector<Index>& positions) {
+    std::vector<Index> indices;
+    for (Index k : positions) indices.push_back(compressed.columns[k]);
+    return indices;
+  };
+
+  SelectionRequest inner = request;
+  inner.candidates.clear();
+  inner.warm_start = {};
+  if (inner.size != SelectionRequest::unlimited) inner.size = run.rules.size();
+  for (Index& j : inner.must_keep) j = position[j];
+  std::vector<double> weights;
+  for (Index k = 0; k < request.warm_start.size(); ++k)
+    if (const Index j = position[request.warm_start.indices[k]]; j >= 0) {
+      inner.warm_start.indices.push_back(j);
+      weights.push_back(request.warm_start.weights[k]);
+    }
+  inner.warm_start.weights = Eigen::Map<const Vector>(weights.data(), static_cast<Index>(weights.size()));
+  if (request.validate)
+    inner.validate = [&](const std::vector<Index>& indices, VectorIn w) {
+      return request.validate(original(indices), w);
+    };
+
+  Selection chosen = select(DenseProblem(compressed.A, compressed.b), inner);
+  WorkingSet<P> working(problem);
+  working.append(run.evaluate(original(chosen.indices)).block);
+  run.record(working, working.fit());
+  const bool lost = chosen.report.status == Status::Converged && run.status_at_size() != Status::Converged;
+  Selection selection =
+      run.finish(working, lost ? Status::Stagnated : chosen.report.status, chosen.report.iterations,
+                 chosen.report.stop_reason + (lost ? " on the compressed rows, but not on all" : ""));
+  std::vector<SelectionStep>& history = selection.report.history;
+  history.insert(history.begin(), chosen.report.history.begin(), chosen.report.history.end());
+  return selection;
+}
+
+static_assert(SubsetSelector<Sketched<UniformRandom>>);
+
+}  // namespace supple

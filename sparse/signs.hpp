@@ -1,0 +1,8 @@
+#pragma once
+
+namespace supple {
+
+/// The weights that a fit may take.
+enum class Signs { NonNegative, Any };
+
+}  // namespace supple
