@@ -21,12 +21,13 @@ std::string in_quotes(std::string_view word) {
 
 std::string read_bytes(const std::filesystem::path& path) {
   const auto fail = [&] { throw InputError(path.string() + ": cannot be read: " + std::strerror(errno)); };
-  if (std::filesystem::is_directory(path)) throw InputError(path.string() + ": is a folder, expected a file");
+  std::error_code unknown;
+  if (std::filesystem::is_directory(path, unknown))
+    throw InputError(path.string() + ": is a folder, expected a file");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) fail();
-  std::error_code unknown_size;
-  const std::uintmax_t size = std::filesystem::file_size(path, unknown_size);
-  std::string bytes(unknown_size ? 0 : size, '\0');
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  std::string bytes(unknown ? 0 : size, '\0');
   bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
   std::array<char, 1 << 14> more;  // pipes have no size
   while (const std::size_t n = std::fread(more.data(), 1, more.size(), file.get()))

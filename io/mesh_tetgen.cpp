@@ -3,6 +3,16 @@
 #include <numeric>
 
 namespace supple {
+namespace {
+
+/// A number of columns that the first line announces; 0 if it does not say.
+std::int64_t num_columns(Cursor& in, const std::string& what) {
+  const std::int64_t count = in.at_line_end() ? 0 : in.integer_in_line("the number of " + what);
+  if (count < 0 || count > 1000) in.fail("expected 0 … 1000 " + what + ", found " + std::to_string(count));
+  return count;
+}
+
+}  // namespace
 
 /// Rows stand in lines of their own; what follows the announced columns is ignored. The first number of the
 /// .node file, 0 or 1, is the base of all. \see Si 2015, "TetGen, a Delaunay-based quality tetrahedral mesh
@@ -14,6 +24,8 @@ void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh) {
   };
   const Index num_nodes = node_file.count("nodes", 7);
   if (node_file.integer_in_line("the dimension") != 3) node_file.fail("expected dimension 3");
+  const std::int64_t num_extra =
+      num_columns(node_file, "attributes") + num_columns(node_file, "boundary markers");
   node_file.rest_of_line();
   mesh.nodes.resize(num_nodes);
   std::int64_t first = 1;
@@ -27,6 +39,7 @@ void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh) {
     if (number != first + v)
       node_file.fail("expected node " + std::to_string(first + v) + ", found " + std::to_string(number));
     for (double& coordinate : mesh.nodes[v]) coordinate = node_file.real_in_line("a coordinate");
+    for (std::int64_t k = 0; k < num_extra; ++k) node_file.real_in_line("an attribute or a boundary marker");
     node_file.rest_of_line();
   }
   mesh.numbers.node.resize(num_nodes);
@@ -36,7 +49,7 @@ void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh) {
   const std::int64_t nodes_per_tet = ele_file.integer_in_line("4 or 10 nodes a tet");
   if (nodes_per_tet != 4 && nodes_per_tet != 10)
     ele_file.fail("expected 4 or 10 nodes a tet, found " + std::to_string(nodes_per_tet));
-  const bool has_region = !ele_file.at_line_end() && ele_file.integer_in_line("the number of attributes") > 0;
+  const std::int64_t num_attributes = num_columns(ele_file, "attributes");
   ele_file.rest_of_line();
   mesh.tets.reserve(num_tets);
   for (Index e = 0; e < num_tets; ++e) {
@@ -48,11 +61,9 @@ void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh) {
       if (a < 4) tet[a] = node;
     }
     mesh.tets.push_back(tet);
-    if (has_region) {
-      double region = 0;
-      while (!ele_file.at_line_end()) region = ele_file.real_in_line("an attribute");
-      mesh.region.push_back(static_cast<int>(std::clamp(region, -1e9, 1e9)));
-    }
+    double region = 0;
+    for (std::int64_t k = 0; k < num_attributes; ++k) region = ele_file.real_in_line("an attribute");
+    if (num_attributes > 0) mesh.region.push_back(static_cast<int>(std::clamp(region, -1e9, 1e9)));
     mesh.num_corner_only += nodes_per_tet > 4;
     ele_file.rest_of_line();
   }

@@ -1,0 +1,380 @@
+#include <tests/io/mesh_files.hpp>
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+
+namespace supple::test {
+namespace {
+
+std::string text(double x) {
+  std::array<char, 32> digits;
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr};
+}
+
+template <typename Number>
+std::string raw(Number value, bool big_endian = false) {
+  std::string bytes(sizeof(Number), '\0');
+  std::memcpy(bytes.data(), &value, sizeof(Number));
+  if (big_endian) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+std::string xyz(const TetMesh& mesh, Index v) {
+  return text(mesh.nodes(v, 0)) + " " + text(mesh.nodes(v, 1)) + " " + text(mesh.nodes(v, 2));
+}
+
+/// " a b c d", counted from `first`.
+std::string corners(const Tet& tet, Index first) {
+  std::string line;
+  for (const Index v : tet) line += " " + std::to_string(v + first);
+  return line;
+}
+
+int region(const TetMesh& mesh, Index e) {
+  return mesh.region.empty() ? 0 : mesh.region[e];
+}
+
+std::string physical_names(const TetMesh& mesh) {
+  std::string s = "$PhysicalNames\n" + std::to_string(mesh.region_names.size()) + "\n";
+  for (const auto& [tag, name] : mesh.region_names) s += "3 " + std::to_string(tag) + " \"" + name + "\"\n";
+  return s + "$EndPhysicalNames\n";
+}
+
+std::string gmsh_22(const TetMesh& mesh) {
+  std::string s = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + physical_names(mesh);
+  s += "$Nodes\n" + std::to_string(mesh.num_nodes()) + "\n";
+  for (Index v = 0; v < mesh.num_nodes(); ++v) s += std::to_string(v + 1) + " " + xyz(mesh, v) + "\n";
+  s += "$EndNodes\n$Elements\n" + std::to_string(mesh.num_tets() + 1) + "\n1 15 2 7 7 1\n";
+  for (Index e = 0; e < mesh.num_tets(); ++e)
+    s += std::to_string(e + 2) + " 4 2 " + std::to_string(region(mesh, e)) + " 1" + corners(mesh.tets[e], 1) +
+         "\n";
+  return s + "$EndElements\n";
+}
+
+std::string gmsh_22_binary(const TetMesh& mesh, bool big) {
+  std::string s =
+      "$MeshFormat\n2.2 1 8\n" + raw(std::int32_t{1}, big) + "\n$EndMeshFormat\n" + physical_names(mesh);
+  s += "$Nodes\n" + std::to_string(mesh.num_nodes()) + "\n";
+  for (Index v = 0; v < mesh.num_nodes(); ++v) {
+    s += raw(static_cast<std::int32_t>(v + 1), big);
+    for (int c = 0; c < 3; ++c) s += raw(mesh.nodes(v, c), big);
+  }
+  s += "\n$EndNodes\n$Elements\n" + std::to_string(mesh.num_tets()) + "\n";
+  const auto integer = [&](Index value) { s += raw(static_cast<std::int32_t>(value), big); };
+  integer(4), integer(mesh.num_tets()), integer(2);
+  for (Index e = 0; e < mesh.num_tets(); ++e) {
+    integer(e + 1), integer(region(mesh, e)), integer(1);
+    for (const Index v : mesh.tets[e]) integer(v + 1);
+  }
+  return s + "\n$EndElements\n$ElementData\nsome bytes: " + raw(std::int32_t{0x24456e64}) +
+         "$EndElementData\n";
+}
+
+/// Gmsh 4.1 with a volume entity, 10 + tag, for each region.
+std::string gmsh_41(const TetMesh& mesh, bool binary) {
+  std::string s = std::string("$MeshFormat\n4.1 ") +
+                  (binary ? "1 8\n" + raw(std::int32_t{1}) + "\n" : "0 8\n") + "$EndMeshFormat\n" +
+                  physical_names(mesh);
+  const auto integer = [&](Index value) {
+    s += binary ? raw(static_cast<std::int32_t>(value)) : std::to_string(value) + " ";
+  };
+  const auto size = [&](Index value) {
+    s += binary ? raw(static_cast<std::uint64_t>(value)) : std::to_string(value) + " ";
+  };
+  const auto real = [&](double value) { s += binary ? raw(value) : text(value) + " "; };
+  std::vector<int> tags = mesh.region;
+  std::sort(tags.begin(), tags.end());
+  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  if (tags.empty()) tags = {0};
+  s += "$Entities\n";
+  size(1), size(0), size(0), size(static_cast<Index>(tags.size()));
+  integer(1), real(0), real(0), real(0), size(0);
+  for (const int tag : tags) {
+    integer(10 + tag);
+    for (int c = 0; c < 6; ++c) real(c);
+    size(tag != 0);
+    if (tag != 0) integer(tag);
+    size(1), integer(-1);
+  }
+  s += "\n$EndEntities\n$Nodes\n";
+  const Index n = mesh.num_nodes(), first_block = n / 3;
+  size(2), size(n), size(1), size(n);
+  for (int block = 0; block < 2; ++block) {  // the first one parametric: with coordinates on a surface
+    const Index begin = block == 0 ? 0 : first_block, end = block == 0 ? first_block : n;
+    integer(block == 0 ? 2 : 3), integer(1), integer(block == 0), size(end - begin);
+    for (Index v = begin; v < end; ++v) size(v + 1);
+    for (Index v = begin; v < end; ++v) {
+      for (int c = 0; c < 3; ++c) real(mesh.nodes(v, c));
+      if (block == 0) real(0.25), real(0.75);
+    }
+  }
+  s += "\n$EndNodes\n$Elements\n";
+  std::vector<std::vector<Index>> blocks;  // runs of one region, to keep the order of tets
+  for (Index e = 0; e < mesh.num_tets(); ++e) {
+    if (blocks.empty() || region(mesh, blocks.back()[0]) != region(mesh, e)) blocks.emplace_back();
+    blocks.back().push_back(e);
+  }
+  size(static_cast<Index>(blocks.size())), size(mesh.num_tets()), size(1), size(mesh.num_tets());
+  for (const std::vector<Index>& block : blocks) {
+    integer(3), integer(10 + region(mesh, block[0])), integer(4), size(static_cast<Index>(block.size()));
+    for (const Index e : block) {
+      size(e + 1);
+      for (const Index v : mesh.tets[e]) size(v + 1);
+    }
+  }
+  return s + "\n$EndElements\n";
+}
+
+std::string medit(const TetMesh& mesh) {
+  std::string s = "MeshVersionFormatted 2\n# a comment\nDimension 3\nVertices\n" +
+                  std::to_string(mesh.num_nodes()) + "\n";
+  for (Index v = 0; v < mesh.num_nodes(); ++v) s += xyz(mesh, v) + " 0\n";
+  s += "RequiredVertices\n2\n1\n2\nTriangles\n1\n1 2 3 9\nTetrahedra\n" + std::to_string(mesh.num_tets()) +
+       "\n";
+  for (Index e = 0; e < mesh.num_tets(); ++e)
+    s += corners(mesh.tets[e], 1).substr(1) + " " + std::to_string(region(mesh, e)) + "\n";
+  return s + "End\n";
+}
+
+std::string tetgen_node(const TetMesh& mesh, Index first) {
+  std::string s = "# nodes\n" + std::to_string(mesh.num_nodes()) + " 3 1 1\n";
+  for (Index v = 0; v < mesh.num_nodes(); ++v)
+    s += std::to_string(v + first) + " " + xyz(mesh, v) + " 0.5 1 # more\n";
+  return s;
+}
+
+std::string tetgen_ele(const TetMesh& mesh, Index first) {
+  std::string s = std::to_string(mesh.num_tets()) + " 4 1\n\n";
+  for (Index e = 0; e < mesh.num_tets(); ++e)
+    s += std::to_string(e + first) + corners(mesh.tets[e], first) + " " + std::to_string(region(mesh, e)) +
+         "\n";
+  return s;
+}
+
+std::string vega(const TetMesh& mesh) {
+  std::string s = "# Vega\n*VERTICES\n" + std::to_string(mesh.num_nodes()) + " 3 0 0\n";
+  for (Index v = 0; v < mesh.num_nodes(); ++v) s += std::to_string(v + 1) + " " + xyz(mesh, v) + "\n";
+  s += "*ELEMENTS\nTET\n" + std::to_string(mesh.num_tets()) + " 4 0\n";
+  for (Index e = 0; e < mesh.num_tets(); ++e) s += std::to_string(e + 1) + corners(mesh.tets[e], 1) + "\n";
+  s += "*MATERIAL rubber\nENU, 1000, 1e6, 0.45\n";
+  for (const auto& [tag, name] : mesh.region_names) {
+    s += "*SET " + name + "\n";
+    for (Index e = 0, in_line = 0; e < mesh.num_tets(); ++e)
+      if (region(mesh, e) == tag) s += std::to_string(e + 1) + (++in_line % 8 == 0 ? ",\n" : ", ");
+    s += "\n*REGION\n" + name + ", rubber\n";
+  }
+  return s;
+}
+
+std::string legacy_vtk(const TetMesh& mesh, bool binary, bool version_5) {
+  std::string s = std::string("# vtk DataFile Version ") + (version_5 ? "5.1" : "3.0") + "\ntitle\n" +
+                  (binary ? "BINARY" : "ASCII") + "\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
+                  std::to_string(mesh.num_nodes()) + " double\n";
+  const auto put = [&]<typename Number>(Number value) {
+    if (binary)
+      s += raw(value, true);
+    else if constexpr (std::is_integral_v<Number>)
+      s += std::to_string(value) + " ";
+    else
+      s += text(value) + " ";
+  };
+  for (Index k = 0; k < mesh.nodes.size(); ++k) put(mesh.nodes.data()[k]);
+  const std::string m = std::to_string(mesh.num_tets());
+  if (version_5) {
+    s += "\nMETADATA\nINFORMATION 0\n\nCELLS " + std::to_string(mesh.num_tets() + 1) + " " +
+         std::to_string(4 * mesh.num_tets()) + "\nOFFSETS vtktypeint64\n";
+    for (std::int64_t e = 0; e <= mesh.num_tets(); ++e) put(4 * e);
+    s += "\nCONNECTIVITY vtktypeint64\n";
+    for (const Tet& tet : mesh.tets)
+      for (const Index v : tet) put(static_cast<std::int64_t>(v));
+  } else {
+    s += "\nCELLS " + m + " " + std::to_string(5 * mesh.num_tets()) + "\n";
+    for (const Tet& tet : mesh.tets) {
+      put(std::int32_t{4});
+      for (const Index v : tet) put(static_cast<std::int32_t>(v));
+    }
+  }
+  s += "\nCELL_TYPES " + m + "\n";
+  for (Index e = 0; e < mesh.num_tets(); ++e) put(std::int32_t{10});
+  s += "\nCELL_DATA " + m + "\n";
+  s += version_5 ? "FIELD FieldData 2\nother 2 " + m + " float\n"
+                 : "SCALARS other float\nLOOKUP_TABLE default\n";
+  for (Index e = 0; e < (version_5 ? 2 : 1) * mesh.num_tets(); ++e) put(0.5f);
+  s += version_5 ? "\nregion 1 " + m + " int\n" : "\nSCALARS region int 1\nLOOKUP_TABLE default\n";
+  for (Index e = 0; e < mesh.num_tets(); ++e) put(static_cast<std::int32_t>(region(mesh, e)));
+  return s + "\n";
+}
+
+std::string base64(const std::string& bytes) {
+  static constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string s;
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t j = 0; j < 3; ++j)
+      group = group << 8 | (k + j < bytes.size() ? static_cast<unsigned char>(bytes[k + j]) : 0u);
+    for (std::size_t j = 0; j < 4; ++j) s += k + j > bytes.size() ? '=' : digits[group >> (18 - 6 * j) & 63];
+  }
+  return s;
+}
+
+struct VtuStyle {
+  bool appended, base64, zlib, wide_header, big_endian;
+};
+
+class VtuWriter {
+ public:
+  VtuWriter(const TetMesh& mesh, const VtuStyle& style) : mesh_(mesh), style_(style) {}
+
+  std::string write() {
+    std::string s =
+        std::string(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"") +
+        (style_.big_endian ? "BigEndian" : "LittleEndian") + "\" header_type=\"" +
+        (style_.wide_header ? "UInt64" : "UInt32") + "\"" +
+        (style_.zlib ? " compressor=\"vtkZLibDataCompressor\"" : "") +
+        ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(mesh_.num_nodes()) +
+        "\" NumberOfCells=\"" + std::to_string(mesh_.num_tets()) + "\">\n";
+    std::string points, connectivity, offsets, types, regions;
+    for (Index k = 0; k < mesh_.nodes.size(); ++k) points += raw(mesh_.nodes.data()[k], style_.big_endian);
+    for (Index e = 0; e < mesh_.num_tets(); ++e) {
+      for (const Index v : mesh_.tets[e])
+        connectivity += raw(static_cast<std::int32_t>(v), style_.big_endian);
+      offsets += raw(std::int64_t{4 * e + 4}, style_.big_endian);
+      types += raw(std::uint8_t{10});
+      regions += raw(static_cast<std::int16_t>(region(mesh_, e)), style_.big_endian);
+    }
+    s += "<CellData>\n" + array("Int16", "gmsh:physical", regions) + "</CellData>\n";
+    s += "<Points>\n" + array("Float64", "Points\" NumberOfComponents=\"3", points) + "</Points>\n<Cells>\n";
+    s += array("Int32", "connectivity", connectivity) + array("Int64", "offsets", offsets) +
+         array("UInt8", "types", types);
+    s += "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
+    if (style_.appended)
+      s += std::string("<AppendedData encoding=\"") + (style_.base64 ? "base64" : "raw") + "\">\n_" +
+           appended_ + "\n</AppendedData>\n";
+    return s + "</VTKFile>\n";
+  }
+
+ private:
+  std::string word(std::uint64_t value) const {
+    return style_.wide_header ? raw(value, style_.big_endian)
+                              : raw(static_cast<std::uint32_t>(value), style_.big_endian);
+  }
+
+  std::string encoded(const std::string& bytes) const { return style_.base64 ? base64(bytes) : bytes; }
+
+  std::string stored(const std::string& bytes) const {
+    if (!style_.zlib) return encoded(word(bytes.size()) + bytes);
+    constexpr std::size_t block = 200;
+    std::string header, blocks;
+    for (std::size_t at = 0; at < bytes.size(); at += block) {
+      const std::string part = bytes.substr(at, block);
+      uLongf size = compressBound(part.size());
+      std::string packed(size, '\0');
+      compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(part.data()),
+               part.size());
+      header += word(size);
+      blocks += packed.substr(0, size);
+    }
+    return encoded(word((bytes.size() + block - 1) / block) + word(block) + word(bytes.size() % block) +
+                   header) +
+           encoded(blocks);
+  }
+
+  std::string array(const std::string& type, const std::string& name, const std::string& bytes) {
+    const std::string head = "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"";
+    if (!style_.appended) return head + "binary\">\n  " + stored(bytes) + "\n</DataArray>\n";
+    const std::size_t offset = appended_.size();
+    appended_ += stored(bytes);
+    return head + "appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+  }
+
+  const TetMesh& mesh_;
+  VtuStyle style_;
+  std::string appended_;
+};
+
+std::string vtu_ascii(const TetMesh& mesh) {
+  std::string points, connectivity, offsets, types, regions;
+  for (Index v = 0; v < mesh.num_nodes(); ++v) points += xyz(mesh, v) + "\n";
+  for (Index e = 0; e < mesh.num_tets(); ++e) {
+    connectivity += corners(mesh.tets[e], 0) + "\n";
+    offsets += std::to_string(4 * e + 4) + " ";
+    types += "10 ";
+    regions += std::to_string(region(mesh, e)) + " ";
+  }
+  const auto array = [](const std::string& name, const std::string& values) {
+    return "<DataArray type=\"Float64\" Name=\"" + name + "\" format=\"ascii\">" + values + "</DataArray>\n";
+  };
+  return "<VTKFile type=\"UnstructuredGrid\">\n<!-- a comment -->\n<UnstructuredGrid><Piece "
+         "NumberOfPoints=\"" +
+         std::to_string(mesh.num_nodes()) + "\" NumberOfCells=\"" + std::to_string(mesh.num_tets()) +
+         "\">\n<Points>" + array("Points\" NumberOfComponents=\"3", points) + "</Points><Cells>" +
+         array("connectivity", connectivity) + array("offsets", offsets) + array("types", types) +
+         "</Cells><CellData>" + array("Region", regions) +
+         "</CellData></Piece></UnstructuredGrid></VTKFile>\n";
+}
+
+}  // namespace
+
+std::vector<MeshFile> in_every_format(const TetMesh& mesh) {
+  std::vector<MeshFile> files{{"gmsh_22_ascii", ".msh", gmsh_22(mesh), ""},
+                              {"gmsh_22_binary", ".msh", gmsh_22_binary(mesh, false), ""},
+                              {"gmsh_22_big_endian", ".msh", gmsh_22_binary(mesh, true), ""},
+                              {"gmsh_41_ascii", ".msh", gmsh_41(mesh, false), ""},
+                              {"gmsh_41_binary", ".msh", gmsh_41(mesh, true), ""},
+                              {"medit_ascii", ".mesh", medit(mesh), ""},
+                              {"tetgen_from_0", ".node", tetgen_node(mesh, 0), tetgen_ele(mesh, 0)},
+                              {"tetgen_from_1", ".node", tetgen_node(mesh, 1), tetgen_ele(mesh, 1)},
+                              {"vega", ".veg", vega(mesh), ""},
+                              {"vtk_3_ascii", ".vtk", legacy_vtk(mesh, false, false), ""},
+                              {"vtk_3_binary", ".vtk", legacy_vtk(mesh, true, false), ""},
+                              {"vtk_5_ascii", ".vtk", legacy_vtk(mesh, false, true), ""},
+                              {"vtk_5_binary", ".vtk", legacy_vtk(mesh, true, true), ""},
+                              {"vtu_ascii", ".vtu", vtu_ascii(mesh), ""}};
+  const auto add = [&](const std::string& name, const VtuStyle& style) {
+    files.push_back({name, ".vtu", VtuWriter(mesh, style).write(), ""});
+  };
+  using S = VtuStyle;
+  add("vtu_base64",
+      S{.appended = false, .base64 = true, .zlib = false, .wide_header = true, .big_endian = false});
+  add("vtu_base64_big",
+      S{.appended = false, .base64 = true, .zlib = false, .wide_header = false, .big_endian = true});
+  add("vtu_base64_zlib",
+      S{.appended = false, .base64 = true, .zlib = true, .wide_header = false, .big_endian = false});
+  add("vtu_appended",
+      S{.appended = true, .base64 = false, .zlib = false, .wide_header = true, .big_endian = false});
+  add("vtu_appended_zlib",
+      S{.appended = true, .base64 = false, .zlib = true, .wide_header = true, .big_endian = false});
+  add("vtu_appended_base64",
+      S{.appended = true, .base64 = true, .zlib = false, .wide_header = false, .big_endian = false});
+  add("vtu_appended_base64_zlib",
+      S{.appended = true, .base64 = true, .zlib = true, .wide_header = true, .big_endian = true});
+  return files;
+}
+
+std::filesystem::path test_folder() {
+  const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+  std::string name = std::string("supple_") + test.test_suite_name() + "_" + test.name();
+  std::replace(name.begin(), name.end(), '/', '_');
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+  std::filesystem::create_directories(path);
+  return path;
+}
+
+std::filesystem::path write(const std::string& bytes, const std::filesystem::path& path) {
+  std::filesystem::remove(path);  // some file systems flush a file that is cut to zero and written again
+  std::ofstream(path, std::ios::binary) << bytes;
+  return path;
+}
+
+std::filesystem::path write(const MeshFile& file, const std::filesystem::path& folder) {
+  if (file.extension == ".node") write(file.ele_bytes, folder / (file.format + ".ele"));
+  return write(file.bytes, folder / (file.format + file.extension));
+}
+
+}  // namespace supple::test

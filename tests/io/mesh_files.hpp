@@ -1,0 +1,36 @@
+#pragma once
+/// \file Writes meshes in every format that Supple reads, each straight from its specification and sharing no
+/// code with the readers.
+
+#include <physics/tet_mesh.hpp>
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace supple::test {
+
+/// The text of a file, or of the two of TetGen.
+struct MeshFile {
+  std::string format;     ///< "gmsh_22_binary"; also a file name that is unique among the formats
+  std::string extension;  ///< ".msh"
+  std::string bytes;      ///< of FORMAT.EXTENSION
+  std::string ele_bytes;  ///< of FORMAT.ele, where the extension is ".node"
+};
+
+inline void PrintTo(const MeshFile& file, std::ostream* out) {
+  *out << file.format;
+}
+
+/// The mesh in every format; coordinates keep every bit.
+std::vector<MeshFile> in_every_format(const TetMesh& mesh);
+
+/// A folder for the files of the running test, its own even when tests run side by side.
+std::filesystem::path test_folder();
+
+/// Writes the file into a folder. \return its path.
+std::filesystem::path write(const MeshFile& file, const std::filesystem::path& folder);
+std::filesystem::path write(const std::string& bytes, const std::filesystem::path& path);
+
+}  // namespace supple::test
