@@ -30,7 +30,7 @@ constexpr unsigned background_top = 0xf7f8fa, background_bottom = 0xe9ecf0, ink 
 constexpr int num_sky_lights = 128, num_key_lights = 48;
 constexpr int sky_map_size = 160, key_map_size = 384;  // texels along each side
 constexpr float key_radius = 0.11f;                    // of the lamp, at distance 1: how soft shadows are
-constexpr float sharp_edge = 0.766f;                   // cos 40°
+constexpr float sharp_edge = 0.643f;                   // cos 50°
 const Vector3f key_colour{1.04f, 1.f, 0.94f}, sky_colour{0.94f, 0.98f, 1.04f};
 constexpr float key_strength = 0.92f, sky_strength = 0.62f, bounce_strength = 0.22f, rim_strength = 0.22f;
 constexpr float gloss = 0.10f, gloss_exponent = 28;
