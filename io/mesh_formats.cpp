@@ -1,6 +1,7 @@
 #include <io/mesh_formats.hpp>
 
 #include <cctype>
+#include <cmath>
 #include <initializer_list>
 
 namespace supple {
@@ -72,8 +73,12 @@ void add_vtk_cells(const VtkCells& cells, Index first_node, const Cursor& in, Fi
     mesh.num_corner_only += end - begin > 4;
     mesh.tets.push_back(tet);
     mesh.numbers.tet.push_back(first_cell + c);
-    if (has_region) mesh.region.push_back(static_cast<int>(std::clamp(cells.region[c], -1e9, 1e9)));
+    if (has_region) mesh.region.push_back(to_region(cells.region[c]));
   }
+}
+
+int to_region(double value) {
+  return std::abs(value) < 1e9 ? static_cast<int>(value) : 0;
 }
 
 bool is_region_array(std::string_view name) {

@@ -42,6 +42,9 @@ struct VtkCells {
 };
 void add_vtk_cells(const VtkCells& cells, Index first_node, const Cursor& in, FileMesh& mesh);
 
+/// The region that an array of floating-point numbers tells; 0 (none) for what is no tag.
+int to_region(double value);
+
 /// Whether a cell array of that name tells regions.
 bool is_region_array(std::string_view name);
 

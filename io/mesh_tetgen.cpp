@@ -63,7 +63,7 @@ void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh) {
     mesh.tets.push_back(tet);
     double region = 0;
     for (std::int64_t k = 0; k < num_attributes; ++k) region = ele_file.real_in_line("an attribute");
-    if (num_attributes > 0) mesh.region.push_back(static_cast<int>(std::clamp(region, -1e9, 1e9)));
+    if (num_attributes > 0) mesh.region.push_back(to_region(region));
     mesh.num_corner_only += nodes_per_tet > 4;
     ele_file.rest_of_line();
   }

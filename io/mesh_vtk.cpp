@@ -52,7 +52,9 @@ class LegacyVtkReader {
   template <typename Number>
   void read_array(Index count, std::string_view type, std::vector<Number>& values) {
     const std::size_t size = size_of(type);
-    if (size == 0) in_.fail("numbers of type " + std::string(type.substr(0, 40)) + " are not known");
+    const bool is_floating = type == "float" || type == "double";
+    if (size == 0 || (is_floating && std::is_integral_v<Number>))
+      in_.fail("numbers of type " + std::string(type.substr(0, 40)) + " are not expected here");
     in_.expect_room(count, is_binary_ ? size : 1, "numbers");
     values.resize(count);
     if (!is_binary_) {
@@ -69,10 +71,8 @@ class LegacyVtkReader {
       for (Number& value : values) value = static_cast<Number>(in_.template take<Stored>("numbers"));
     };
     const bool is_signed = !type.starts_with("unsigned");
-    if (type == "float")
-      take(float{});
-    else if (type == "double")
-      take(double{});
+    if (is_floating)
+      size == 4 ? take(float{}) : take(double{});
     else if (size == 1)
       is_signed ? take(std::int8_t{}) : take(std::uint8_t{});
     else if (size == 2)
