@@ -4,13 +4,14 @@
 #include <core/types.hpp>
 
 #include <cstddef>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
 namespace supple {
 
-/// Pattern of L in P A Pᵀ = L Lᵀ. Supernode s is a dense block of columns first_column[s] … first_column[s +
-/// 1] − 1 that share the rows rows[row_start[s]] … : its own columns first, then those below, ascending.
+/// Pattern of L in P A Pᵀ = L Lᵀ. Supernode s is a dense block of the columns from first_column[s] on that
+/// share the rows from rows[row_start[s]] on: its own columns first, then those below, ascending.
 /// Supernodes are in postorder: a subtree is a range of them, its root last.
 struct SupernodalPattern {
   std::vector<int> order;         ///< row i of P A Pᵀ is row order[i] of A
@@ -35,8 +36,8 @@ class SupernodalFactor {
   /// \param A  symmetric with the pattern that was analysed; only its pattern is read.
   SupernodalFactor(SupernodalPattern pattern, const SparseMatrix& A);
 
-  /// False if a pivot is not positive, and then the values are of no use. \throws SolverError if memory runs
-  /// out.
+  /// False if a pivot is not positive, and then the values are of no use.
+  /// \throws SolverError if memory runs out.
   bool factorize(const SparseMatrix& A);
   /// X = A⁻¹ B; X may be B.
   void solve(MatrixIn B, MatrixOut X) const;
@@ -74,7 +75,10 @@ class SupernodalFactor {
   std::vector<int>
       target_;  // of every row below: a row of X, or −1 − its place below the root of its subtree
   double flops_ = 0;
-  std::unique_ptr<double[]> values_;
+  struct Free {
+    void operator()(double* memory) const { std::free(memory); }
+  };
+  std::unique_ptr<double[], Free> values_;
 };
 
 }  // namespace supple

@@ -96,12 +96,14 @@ void project_out(const Matrix& Q, Matrix& X) {
   for (int pass = 0; pass < 2; ++pass) tall::add_product(-1, Q, tall::inner_products(Q, X), 1, X);
 }
 
-/// Orthonormal columns with the span of X, by two Cholesky–QR passes; X must be well conditioned.
+/// Orthonormal columns with the span of X: two Cholesky–QR passes, or Householder's if X is too ill
+/// conditioned for them.
 Matrix orthonormalized(Matrix X) {
   X.colwise().normalize();
   for (int pass = 0; pass < 2; ++pass) {
     const Eigen::LLT<Matrix> gram(tall::inner_products(X, X));
-    if (gram.info() != Eigen::Success) throw SolverError("eigenvectors found are linearly dependent");
+    if (gram.info() != Eigen::Success || gram.matrixLLT().diagonal().minCoeff() < 1e-6)
+      return Eigen::HouseholderQR<Matrix>(X).householderQ() * Matrix::Identity(X.rows(), X.cols());
     Matrix Q(X.rows(), X.cols());
     tall::add_product(1, X, gram.matrixU().solve(Matrix::Identity(X.cols(), X.cols())), 0, Q);
     X.swap(Q);
@@ -222,7 +224,7 @@ Pairs search_largest(const ShiftedInverse& inverse, const Matrix& deflated, cons
 
   const Index wanted_blocks = (search.num_pairs + search.block_size - 1) / search.block_size;
   const Index most_blocks = (n - deflated.cols()) / search.block_size - 1;
-  const Index num_blocks = std::min(std::max(wanted_blocks + 8, 3 * wanted_blocks), most_blocks);
+  const Index num_blocks = std::min(std::max(wanted_blocks + 16, 3 * wanted_blocks), most_blocks);
   Teuchos::ParameterList parameters;
   parameters.set("Which", "LM");
   parameters.set("Block Size", static_cast<int>(search.block_size));
@@ -266,13 +268,14 @@ Pairs dense_pairs(const StandardProblem& problem) {
   return {dense.eigenvalues(), complement * dense.eigenvectors()};
 }
 
-/// The `count` smallest pairs; fewer if the search did not converge.
 struct SparseResult {
   Pairs pairs;
   Index missed = 0, blocks = 0;
   double shift = 0;
+  bool complete = true;  // the search for missed pairs, if asked for, came to an end
 };
 
+/// The `count` smallest pairs; fewer if the search did not converge.
 SparseResult sparse_pairs(const StandardProblem& problem, Index count, const EigenOptions& options) {
   const ShiftedInverse inverse(problem, options.seed);
   const Index block_size = options.block_size;
@@ -296,7 +299,8 @@ SparseResult sparse_pairs(const StandardProblem& problem, Index count, const Eig
     found = result.pairs.vectors;
   };
   polish();
-  while (options.check_completeness && found.cols() == count && count < available) {
+  const bool check = options.check_completeness && found.cols() == count && count < available;
+  for (Index round = 0; check && round < count; ++round) {  // each brings at least one missed pair
     const Matrix taken = side_by_side(problem.deflated, found);
     ++search.seed;
     const Index probe_block = std::min(block_size, available - count);
@@ -307,12 +311,14 @@ SparseResult sparse_pairs(const StandardProblem& problem, Index count, const Eig
       // A copy of the last frequency that the cut left out is nothing missed.
       return 1 / theta - inverse.shift() < largest_kept - 1e-6 * (largest_kept + inverse.shift());
     };
-    if (next.values.size() == 0 || !below(next.values[0])) break;
+    result.complete = next.values.size() > 0;
+    if (!result.complete || !below(next.values[0])) break;
     const Pairs more = search_largest(
         inverse, taken,
         {std::min(probe_block, count), search.tolerance, probe_block, options.max_restarts, search.seed},
         tick);
-    if (more.values.size() == 0) break;
+    result.complete = more.values.size() > 0;
+    if (!result.complete) break;
     for (const double theta : more.values) result.missed += below(theta);
     found = side_by_side(found, more.vectors);
     polish();
@@ -354,6 +360,7 @@ EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, 
   if (chosen.block_size == 0) chosen.block_size = 4;
   chosen.block_size = std::min(chosen.block_size, options.num_modes);
   Pairs pairs;
+  bool complete = true;
   if (n <= dense_rows || 4 * (options.num_modes + 8 * chosen.block_size) > available) {
     pairs = dense_pairs(problem);
     pairs.values.conservativeResize(options.num_modes);
@@ -362,6 +369,7 @@ EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, 
   } else {
     SparseResult sparse = sparse_pairs(problem, options.num_modes, chosen);
     pairs = std::move(sparse.pairs);
+    complete = sparse.complete;
     result.missed = sparse.missed;
     result.shift = sparse.shift;
     result.report.iterations = sparse.blocks;
@@ -371,7 +379,7 @@ EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, 
   result.omega_squared = std::move(pairs.values);
   const Index r = result.omega_squared.size();
   result.residuals.resize(r);
-  bool converged = r == options.num_modes;
+  bool converged = complete && r == options.num_modes;
   for (Index j = 0; j < r; ++j) {
     const double scale = std::max(result.omega_squared[j] + result.shift, zero_energy * problem.norm);
     result.residuals[j] = force.col(j).norm() / scale;

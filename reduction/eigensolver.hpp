@@ -20,7 +20,7 @@ struct EigenOptions {
   Index max_restarts = 50;
   std::uint64_t seed = 1;  ///< of the start vectors
   /// Search once more, from fresh random vectors orthogonal to all found, for a mode that was passed over.
-  /// Costs about a fourth of the time; switch it off if a missing copy of a repeated frequency does no harm.
+  /// Takes about a third of all solves; switch it off if a missing copy of a repeated frequency does no harm.
   bool check_completeness = true;
   Progress progress;
 };
@@ -34,8 +34,8 @@ struct EigenPairs {
   /// Leading pairs with ω² ≤ 1e-13 ‖M^{−1/2} K M^{−1/2}‖_∞: motions without energy beyond `rigid`, such as
   /// hinges.
   Index extra_zero_modes = 0;
-  double rigid_residual =
-      0;  ///< largest ‖K φ‖_{M⁻¹} / ‖M^{−1/2} K M^{−1/2}‖_∞ over the M-orthonormalised rigid
+  /// Largest ‖K φ‖_{M⁻¹} / ‖M^{−1/2} K M^{−1/2}‖_∞ over the M-orthonormalised columns φ of `rigid`.
+  double rigid_residual = 0;
   double shift = 0;  ///< σ [1/s²]; 0 if a dense solver was used
 };
 
@@ -43,20 +43,19 @@ struct EigenPairs {
 ///
 /// Block Krylov–Schur iteration (Anasazi) on (K + σ M)⁻¹ M with a sparse Cholesky factorisation; σ > 0 is a
 /// small fraction of the lowest flexible ω², so that free and hinged objects need no special treatment. Small
-/// problems go to a dense solver. The same seed gives the same bits for any num_threads(). \param K n × n,
-/// symmetric, positive semi-definite (up to σ), both triangles stored [N/m] \param M_diagonal  n masses > 0
-/// [kg] \param rigid       n × k, known fields with K φ = 0, e.g. the rigid motions of a free object; may
-/// have no columns
-///                    (or n × 0); dependent columns are dropped
+/// problems go to a dense solver. The same seed gives the same bits for any num_threads().
+/// \param K           n × n, symmetric, positive semi-definite (up to σ), both triangles stored [N/m]
+/// \param M_diagonal  n masses > 0 [kg]
+/// \param rigid       n × k, known fields with K φ = 0, e.g. the rigid motions of a free object; may have no
+///                    columns; dependent columns are dropped
 /// \return report.status is Converged if every residual meets the tolerance or the rounding error of K φ,
-/// whichever
-///         is larger. Otherwise MaxIterations, with those pairs that were found: maybe fewer than num_modes.
-/// \throws std::invalid_argument if sizes differ, K is not symmetric or finite, a mass is not positive, rigid
-/// has
-///         energy, or num_modes is outside [1, n − rank(rigid)].
+///         whichever is larger, and the completeness check (if asked for) came to an end. Otherwise
+///         MaxIterations, with those pairs that were found: maybe fewer than num_modes.
+/// \throws std::invalid_argument if sizes differ, K is zero, not symmetric or not finite, a mass is not
+///         positive, rigid has energy, or num_modes is outside [1, n − rank(rigid)].
 /// \throws SolverError if K + σ M is not positive definite: K has negative eigenvalues.
-/// \note One factorisation (two if the first shift fits badly), about 3 num_modes solves, O(n · num_modes)
-/// memory. \see Stewart 2001 and Zhou & Saad 2008 (block Krylov–Schur); Baker et al. 2009 (Anasazi).
+/// \note One factorisation (two if the first shift fits badly), 4 to 7 solves a mode, O(n num_modes) memory.
+/// \see Stewart 2001 and Zhou & Saad 2008 (block Krylov–Schur); Baker et al. 2009 (Anasazi).
 EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, const Matrix& rigid,
                                const EigenOptions& options = {});
 

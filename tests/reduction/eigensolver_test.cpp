@@ -210,6 +210,27 @@ TEST(Eigensolver, FindsEveryCopyOfDisconnectedParts) {
   }
 }
 
+TEST(Eigensolver, LooksForCopiesThatTheFirstSearchPassedOver) {
+  const Index n = 400;
+  const SparseMatrix K = copies(laplacian(n), 2);
+  const Vector M = Vector::Ones(K.rows());
+  EigenOptions options;
+  options.num_modes = 4;
+  options.block_size = 1;
+  options.tolerance = 1e-2;  // a single vector stops long before rounding brings up the copies
+  options.check_completeness = false;
+  const EigenPairs hasty = smallest_eigenpairs(K, M, Matrix(K.rows(), 0), options);
+  ASSERT_GT(hasty.omega_squared[1], 2 * laplacian_eigenvalue(n, 1));
+  options.check_completeness = true;
+  const EigenPairs pairs = smallest_eigenpairs(K, M, Matrix(K.rows(), 0), options);
+  expect_eigenpairs(K, M, Matrix(K.rows(), 0), pairs, options.tolerance);
+  EXPECT_EQ(pairs.missed, 2);
+  for (Index k = 0; k < 4; ++k) {
+    const double expected = laplacian_eigenvalue(n, 1 + k / 2);
+    EXPECT_NEAR(pairs.omega_squared[k], expected, 1e-4 * expected) << k;  // the residual enters squared
+  }
+}
+
 TEST(Eigensolver, LeavesRigidMotionsOutOfAFreeObject) {
   const Lattice free = spring_lattice(block_of_points(9, 5, 4));
   const Index n = free.K.rows();
@@ -289,6 +310,20 @@ TEST(Eigensolver, CountsTheMotionsOfAHinge) {
     const Eigen::SelfAdjointEigenSolver<Matrix> dense{Matrix(K)};
     EXPECT_LE((pairs.omega_squared - dense.eigenvalues().segment(6, 10)).cwiseAbs().maxCoeff(), 1e-10);
   }
+}
+
+TEST(Eigensolver, FindsMoreZeroEnergyMotionsThanAnyBlockHolds) {
+  SparseMatrix chain = laplacian(40);
+  chain.coeffRef(0, 0) = chain.coeffRef(39, 39) = 1;  // free ends: eigenvalues 4 sin²(k π / 80), k = 0 … 39
+  const SparseMatrix K = copies(chain, 20);
+  const Vector M = Vector::Ones(K.rows());
+  EigenOptions options;
+  options.num_modes = 25;
+  const EigenPairs pairs = smallest_eigenpairs(K, M, Matrix(K.rows(), 0), options);
+  expect_eigenpairs(K, M, Matrix(K.rows(), 0), pairs);
+  EXPECT_EQ(pairs.extra_zero_modes, 20);
+  const double first = 4 * std::pow(std::sin(std::numbers::pi / 80), 2);
+  EXPECT_LE((pairs.omega_squared.tail(5).array() - first).abs().maxCoeff(), 1e-9);
 }
 
 TEST(Eigensolver, KeepsAccuracyFarBelowTheLargestEigenvalue) {
