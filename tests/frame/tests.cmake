@@ -1,0 +1,15 @@
+add_test(NAME frame.includes_run_downward
+  COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -P ${CMAKE_CURRENT_LIST_DIR}/check_includes.cmake)
+set_tests_properties(frame.includes_run_downward PROPERTIES LABELS unit)
+
+# The installed package serves consumers compiled for other instruction sets than its own. Sanitized libraries need
+# sanitized consumers, so this is for the plain builds.
+if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  foreach(march x86-64 native)
+    add_test(NAME frame.consumer_compiled_for_${march}
+      COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DSOURCE=${CMAKE_CURRENT_LIST_DIR}/consumer
+              -DWORK=${PROJECT_BINARY_DIR}/consumer-${march} -DFLAGS=-march=${march} -DGENERATOR=${CMAKE_GENERATOR}
+              -P ${CMAKE_CURRENT_LIST_DIR}/run_consumer.cmake)
+    set_tests_properties(frame.consumer_compiled_for_${march} PROPERTIES LABELS slow TIMEOUT 1200)
+  endforeach()
+endif()
