@@ -7,6 +7,16 @@ const std::vector<std::string>& material_laws() {
   return names;
 }
 
+Solid isotropic_solid(TetMesh mesh, const IsotropicModuli& moduli, std::vector<Index> fixed_nodes,
+                      std::string_view law, double density) {
+  const std::vector<double> parameters = law_parameters(law, moduli);
+  Solid solid{.mesh = std::move(mesh), .law = std::string(law)};
+  solid.parameters = Eigen::Map<const RowMatrix>(parameters.data(), 1, static_cast<Index>(parameters.size()));
+  solid.density = Vector::Constant(1, density);
+  solid.fixed_nodes = std::move(fixed_nodes);
+  return solid;
+}
+
 std::vector<double> law_parameters(std::string_view law, const IsotropicModuli& moduli, double mooney_share) {
   moduli.check();
   require(mooney_share >= 0 && mooney_share <= 1,

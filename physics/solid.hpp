@@ -26,6 +26,11 @@ struct Solid {
   Vector nodal_mass() const { return lumped_mass(mesh, density); }  ///< n [kg]
 };
 
+/// A solid of one material. \throws std::invalid_argument for an unknown law or impossible moduli.
+/// \param density  [kg/m³].
+Solid isotropic_solid(TetMesh mesh, const IsotropicModuli& moduli, std::vector<Index> fixed_nodes = {},
+                      std::string_view law = "stvk", double density = 1000);
+
 /// "stvk" (St. Venant–Kirchhoff) and "mooney-rivlin".
 const std::vector<std::string>& material_laws();
 

@@ -1,4 +1,5 @@
 # Fails when an include runs up a floor of the house. Run as: cmake -DROOT=<source> -P check_includes.cmake
+cmake_minimum_required(VERSION 3.25)
 set(may_include_core core)
 set(may_include_sparse sparse core)
 set(may_include_physics physics core)

@@ -1,0 +1,37 @@
+// From a mesh to a reduced model that simulates in real time.
+//
+//   $ example_01_reduce_and_simulate
+//   63 of 2304 tets stand for all: error 0.0205 in training, 0.0066 held out
+//   after 1.00 s the tip has moved by (0.01, -0.46, 0.00) m
+#include <io/builtin_meshes.hpp>
+#include <io/node_sets.hpp>
+#include <reduction/reduce.hpp>
+
+#include <cstdio>
+
+using namespace supple;
+
+int main() {
+  const TetMesh mesh = builtin_mesh("bar:24x4x4");  // or read_tet_mesh("dragon.msh")
+  const Solid solid = isotropic_solid(mesh, {.young = 2e5, .poisson = 0.4}, select_nodes(mesh, "x<1%"));
+
+  ReduceReport report;
+  const ReducedModel model = reduce(solid, {.modes = 8, .points = 63}, &report);
+  std::printf("%td of %td tets stand for all: error %.4f in training, %.4f held out\n", report.points,
+              report.tets, report.training_error, report.held_out_error);
+  save_model("bar.supple",
+             model);  // load_model() reads it back; so do `supple simulate` and any safetensors reader
+
+  const Index tip = select_nodes(mesh, "x>99%").front();
+  return with_reduced_system(model, [&](const auto& system) {
+    Newmark newmark(system, 0.01, {.damping = {.beta = 0.002}, .solver = NonlinearSolver::Broyden});
+    State state = State::at_rest(system.dim());
+    const AffineLoad<Matrix> load = system.project({.gravity = {0, -1.5, 0}});
+    newmark.balance(load, state);
+    for (int step = 0; step < 100; ++step)
+      if (newmark.step(load, state).status != Status::Converged) return 1;
+    const auto u = [&](int axis) { return system.subspace().at(3 * tip + axis, state.u); };
+    std::printf("after %.2f s the tip has moved by (%.2f, %.2f, %.2f) m\n", state.time, u(0), u(1), u(2));
+    return 0;
+  });
+}
