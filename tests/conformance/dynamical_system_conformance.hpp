@@ -197,11 +197,12 @@ TYPED_TEST_P(DynamicalSystemConformance, NumberOfThreadsDoesNotChangeABit) {
 TYPED_TEST_P(DynamicalSystemConformance, ConstCallsFromSeveralThreadsGiveTheSameBits) {
   const auto evaluate = [&](std::uint64_t seed) {
     const Vector u = this->deformed(seed);
-    Vector all(this->system.dim() + 2);
-    all << this->system.energy(u), this->force(u), this->stiffness(u).sum();
+    const Matrix K = this->stiffness(u);
+    Matrix all(K.rows(), K.cols() + 2);
+    all << Vector::Constant(u.size(), this->system.energy(u)), this->force(u), K;
     return all;
   };
-  std::array<Vector, 3> serial, parallel;
+  std::array<Matrix, 3> serial, parallel;
   for (std::uint64_t k = 0; k < 3; ++k) serial[k] = evaluate(k);
   {
     std::vector<std::jthread> threads;

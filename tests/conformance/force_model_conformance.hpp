@@ -141,12 +141,13 @@ TYPED_TEST_P(ForceModelConformance, ConstCallsFromSeveralThreadsGiveTheSameBits)
   const auto& components = *this->model;
   constexpr int size = TestFixture::dofs;
   const auto evaluate = [&] {
-    Matrix all(size + 2, components.num_components());
-    for (Index i = 0; i < all.cols(); ++i) {
+    Matrix all((size + 2) * components.num_components(), size);
+    for (Index i = 0; i < components.num_components(); ++i) {
       const Local<size> u = this->state(i, 1);
-      all(0, i) = components.energy(i, u);
-      all.col(i).template segment<size>(1) = components.force(i, u);
-      all(size + 1, i) = components.stiffness(i, u).sum();
+      auto rows = all.template middleRows<size + 2>(i * (size + 2));
+      rows.row(0).setConstant(components.energy(i, u));
+      rows.row(1) = components.force(i, u).transpose();
+      rows.template bottomRows<size>() = components.stiffness(i, u);
     }
     return all;
   };
