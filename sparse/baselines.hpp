@@ -2,6 +2,7 @@
 /// \file Floor and ceiling of a comparison.
 
 #include <sparse/selection_run.hpp>
+#include <sparse/smallest_selection.hpp>
 
 namespace supple {
 
@@ -12,6 +13,7 @@ struct UniformRandom {
 
   template <FittingProblem P>
   Selection operator()(const P& problem, const SelectionRequest& request) const {
+    if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
     SelectionRun<P> run(problem, request);
     WorkingSet<P> S = run.start();
     S.append(run.evaluate(

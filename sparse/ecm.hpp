@@ -3,6 +3,7 @@
 
 #include <sparse/nn_omp.hpp>
 #include <sparse/row_compression.hpp>
+#include <sparse/smallest_selection.hpp>
 
 namespace supple {
 
@@ -19,6 +20,7 @@ struct Ecm {
   template <FittingProblem P>
   Selection operator()(const P& problem, const SelectionRequest& request) const {
     require(num_modes >= 0, "num_modes is " + std::to_string(num_modes) + ", expected 0 (automatic) or more");
+    if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
     const SelectionRules rules(request, problem.cols(), problem.rhs());
     const Index modes = std::min(num_modes > 0 ? num_modes : rules.size(), problem.rows());
     return select_on_rows(whitened_rows(modes, seed, problem, rules.eligible()),

@@ -3,6 +3,7 @@
 /// field.
 
 #include <sparse/greedy.hpp>
+#include <sparse/smallest_selection.hpp>
 
 namespace supple {
 
@@ -39,7 +40,7 @@ struct GreedyCubature {
   template <GroupedFittingProblem P>
   Selection with_subset_training(const P& problem, const SelectionRequest& request) const {
     SelectionRun<P> run(problem, request);
-    const Index s = run.rules.size(), interval = std::max<Index>(1, s / 20);
+    const Index s = run.rules.size();
     Random random(seed);
 
     WorkingSet<P> S = run.start();
@@ -61,8 +62,8 @@ struct GreedyCubature {
       return run.finish(S, status, iterations, reason);
     };
     for (; iterations < max_iterations; ++iterations) {
-      const bool full = S.size() + static_cast<Index>(joined.size()) >= s;
-      if (full || static_cast<Index>(joined.size()) >= interval) {
+      const auto num_joined = static_cast<Index>(joined.size()), size = S.size() + num_joined;
+      if (size >= s || num_joined > size / 20) {
         fit_to_all_rows();
         if (run.met(tolerance)) return finish(Status::Converged, "target error reached");
         if (S.size() >= s) return finish(run.status_at_size(), "size reached");
@@ -108,6 +109,7 @@ struct BatchedGreedy {
   Selection operator()(const P& problem, const SelectionRequest& request) const {
     require(added_per_size > 0, "added_per_size is not positive, expected about 0.1");
     require(candidates_per_added >= 1, "candidates_per_added is less than 1, expected about 10");
+    if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
     const Index batch = std::max<Index>(1, share(added_per_size, std::min(request.size, problem.cols())));
     return grow({.tolerance = tolerance,
                  .candidates = share(candidates_per_added, batch),

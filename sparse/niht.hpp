@@ -4,6 +4,7 @@
 
 #include <sparse/hard_threshold.hpp>
 #include <sparse/selection_run.hpp>
+#include <sparse/smallest_selection.hpp>
 
 #include <tuple>
 
@@ -76,7 +77,7 @@ Selection iterative_hard_thresholding(const Options& options, Signs signs, const
     w_S << w, Vector::Zero(fresh.size());
     Vector along = p;  // p_S
     if (normalized && p.head(n).norm() > 1e-12 * p.norm()) along.tail(fresh.size()).setZero();
-    if (along.norm() == 0) return finish(Status::Converged, "the gradient vanishes");
+    if (along.norm() == 0) return finish(run.status_at_size(), "the gradient vanishes");
     double mu = (options.step == NihtStep::Paper ? 2 : 1) * along.squaredNorm() / A_S(along).squaredNorm();
 
     Vector w_next, change;
@@ -94,7 +95,8 @@ Selection iterative_hard_thresholding(const Options& options, Signs signs, const
       const bool same_support = chosen.empty() && static_cast<Index>(kept.size()) == n;
       if (!normalized || same_support || mu * A_S(change).squaredNorm() <= 0.99 * change.squaredNorm()) break;
     }
-    if (change.norm() <= 1e-12 * w_next.norm()) return finish(Status::Converged, "the weights do not change");
+    if (change.norm() <= 1e-12 * w_next.norm())
+      return finish(run.status_at_size(), "the weights do not change");
 
     X.keep(kept);
     X.append(fresh.subset(chosen));
@@ -109,11 +111,13 @@ Selection iterative_hard_thresholding(const Options& options, Signs signs, const
 
 template <FittingProblem P>
 Selection Niht::operator()(const P& problem, const SelectionRequest& request) const {
+  if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
   return iterative_hard_thresholding(*this, Signs::Any, problem, request);
 }
 
 template <FittingProblem P>
 Selection NnNiht::operator()(const P& problem, const SelectionRequest& request) const {
+  if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
   return iterative_hard_thresholding(*this, Signs::NonNegative, problem, request);
 }
 

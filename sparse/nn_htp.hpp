@@ -3,6 +3,7 @@
 
 #include <sparse/hard_threshold.hpp>
 #include <sparse/selection_run.hpp>
+#include <sparse/smallest_selection.hpp>
 
 namespace supple {
 
@@ -91,7 +92,7 @@ Selection hard_thresholding_pursuit(const Options& options, Signs signs, const P
     const bool same = chosen.empty() && static_cast<Index>(kept.size()) == X.size();
     if (entering.empty() || same || next == previous) {
       if (static_cast<Index>(rest.size()) <= c)
-        return finish(Status::Converged, "no column improves the selection");
+        return finish(run.status_at_size(), "no column improves the selection");
       if (++unchanged >= options.patience) return finish(Status::Stagnated, "repeated draws change nothing");
       continue;
     }
@@ -109,11 +110,13 @@ Selection hard_thresholding_pursuit(const Options& options, Signs signs, const P
 
 template <FittingProblem P>
 Selection NnHtp::operator()(const P& problem, const SelectionRequest& request) const {
+  if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
   return hard_thresholding_pursuit(*this, Signs::NonNegative, problem, request);
 }
 
 template <FittingProblem P>
 Selection Htp::operator()(const P& problem, const SelectionRequest& request) const {
+  if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
   return hard_thresholding_pursuit(*this, Signs::Any, problem, request);
 }
 

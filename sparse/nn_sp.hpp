@@ -4,6 +4,7 @@
 #include <sparse/hard_threshold.hpp>
 #include <sparse/pruning.hpp>
 #include <sparse/selection_run.hpp>
+#include <sparse/smallest_selection.hpp>
 
 namespace supple {
 
@@ -28,6 +29,7 @@ struct NnSp {
   Selection operator()(const P& problem, const SelectionRequest& request) const {
     require(candidates_per_size > 0, "candidates_per_size is not positive, expected about 2");
     require(added_per_size > 0, "added_per_size is not positive, expected about 0.25");
+    if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
     SelectionRun<P> run(problem, request);
     const Index s = run.rules.size(), c = share(candidates_per_size, s), added = share(added_per_size, s);
     Random random(seed);
@@ -50,7 +52,7 @@ struct NnSp {
       const Scan<P> drawn = run.scan(random.sample(rest, std::max(c, groups)), r);
       const std::vector<Index> entering = best_of_groups(drawn.cosines(), groups);
       if (entering.empty() && drawn.size() == static_cast<Index>(rest.size()))
-        return finish(Status::Converged, "no column improves the selection");
+        return finish(run.status_at_size(), "no column improves the selection");
 
       S.append(run.columns(drawn, entering));
       Vector w_next = S.fit();

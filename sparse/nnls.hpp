@@ -50,4 +50,37 @@ struct Fnnls {
 /// Residual as above, for gᵢ = 0. \note O(n³/3). \throws std::invalid_argument if sizes do not fit.
 NnlsSolution least_squares(MatrixIn gram, VectorIn atb);
 
+/// How Nnls solves.
+enum class NnlsMethod {
+  Automatic,        ///< normal equations; QR takes over where their pivots say that digits are lost
+  NormalEquations,  ///< Fnnls on AᵀA, polished with the residual of A: fastest
+  Qr,               ///< the same exchanges on an orthogonal factorisation of the passive columns: all digits
+  LawsonHanson,     ///< Qr with one column at a time from an empty set: the textbook's method, for reference
+};
+
+struct NnlsFit {
+  Vector w;                                   ///< ≥ 0 (n)
+  std::vector<Index> passive;                 ///< where w > 0, ascending
+  double residual_norm = 0;                   ///< ‖A w − b‖
+  NnlsMethod method = NnlsMethod::Automatic;  ///< the one that gave the answer
+  /// Residual: the KKT conditions evaluated on A: the largest violation of gᵢ ≤ 0, and of gᵢ = 0 where wᵢ >
+  /// 0, by gᵢ = aᵢᵀ(b − A w) / (‖aᵢ‖ ‖b‖).
+  Report report;
+};
+
+/// min ‖A w − b‖ subject to w ≥ 0, for a matrix in memory.
+/// Copies of columns, zero columns, any scale of columns, rank deficiency and n > rows are all answered; of
+/// several solutions, one with linearly independent columns. \note NormalEquations: rows n² / 2
+/// multiplications for AᵀA, then O(n²) an exchange; Qr: rows n² first, if rows > n. \see Bro & De Jong 1997;
+/// Lawson & Hanson 1974; Daniel, Gragg, Kaufman & Stewart 1976 (updating QR).
+struct Nnls {
+  NnlsMethod method = NnlsMethod::Automatic;
+  double tolerance = 1e-12;  ///< of the KKT residual
+  Index max_iterations = 0;  ///< exchanges; 0: 3 n + 30
+
+  /// \param passive  columns to start from; may be empty.
+  /// \throws std::invalid_argument if sizes do not fit. A NaN or infinity gives Status::NotFinite.
+  NnlsFit operator()(MatrixIn A, VectorIn b, std::span<const Index> passive = {}) const;
+};
+
 }  // namespace supple

@@ -5,6 +5,7 @@
 #include <core/random.hpp>
 #include <sparse/baselines.hpp>
 #include <sparse/selection_run.hpp>
+#include <sparse/smallest_selection.hpp>
 
 namespace supple {
 
@@ -78,7 +79,8 @@ Selection select_on_rows(const CompressedRows& compressed, const S& select, cons
                          const SelectionRequest& request);
 
 /// Chooses with `select` on a CountSketch of the rows, and fits the weights to all rows.
-/// \note every candidate column is evaluated once; rows · m numbers are kept.
+/// \note every candidate column is evaluated once (for a target error without a size: in each run of the
+/// search); rows · m numbers are kept.
 template <typename Selector>
 struct Sketched {
   Selector select;
@@ -89,6 +91,7 @@ struct Sketched {
   template <FittingProblem P>
   Selection operator()(const P& problem, const SelectionRequest& request) const {
     require(rows >= 0, "rows is " + std::to_string(rows) + ", expected 0 (automatic) or more");
+    if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
     const SelectionRules rules(request, problem.cols(), problem.rhs());
     const Index wanted = rows > 0 ? rows : std::max<Index>(256, 8 * rules.size());
     const CountSketch sketch(problem.rows(), std::min(wanted, problem.rows()), seed);
@@ -160,16 +163,34 @@ Selection select_on_rows(const CompressedRows& compressed, const S& select, cons
       return request.validate(original(indices), w);
     };
 
-  Selection chosen = select(DenseProblem(compressed.A, compressed.b), inner);
+  const DenseProblem rows(compressed.A, compressed.b);
   WorkingSet<P> working(problem);
-  working.append(run.evaluate(original(chosen.indices)).block);
-  run.record(working, working.fit());
-  const bool lost = chosen.report.status == Status::Converged && run.status_at_size() != Status::Converged;
+  Selection chosen;
+  std::vector<SelectionStep> steps;  // on the compressed rows
+  bool lost = true;                  // met the target on the compressed rows, but not on all
+  for (int attempt = 0; lost && attempt < 5; ++attempt) {
+    const double start = run.seconds();
+    chosen = select(rows, inner);
+    for (SelectionStep step : chosen.report.history) {
+      step.seconds += start;
+      step.columns_evaluated = static_cast<Index>(compressed.columns.size());
+      steps.push_back(step);
+    }
+    working = WorkingSet<P>(problem);
+    working.append(run.evaluate(original(chosen.indices)).block);
+    run.record(working, working.fit());
+    lost = chosen.report.status == Status::Converged && run.status_at_size() != Status::Converged;
+    inner.target_error *= 0.8 * request.target_error / std::max(run.error(), 1e-15);
+    inner.warm_start = chosen;
+  }
   Selection selection =
       run.finish(working, lost ? Status::Stagnated : chosen.report.status, chosen.report.iterations,
                  chosen.report.stop_reason + (lost ? " on the compressed rows, but not on all" : ""));
   std::vector<SelectionStep>& history = selection.report.history;
-  history.insert(history.begin(), chosen.report.history.begin(), chosen.report.history.end());
+  history.insert(history.begin(), steps.begin(), steps.end());
+  std::stable_sort(
+      history.begin(), history.end(),
+      [](const SelectionStep& first, const SelectionStep& second) { return first.seconds < second.seconds; });
   return selection;
 }
 

@@ -101,6 +101,7 @@ class SelectionRun {
 
   double b_norm() const { return b_norm_; }
   double error() const { return error_; }  ///< of the best iterate so far
+  double seconds() const { return stopwatch_.seconds(); }
   bool met(double tolerance) const { return error_ <= std::max({tolerance, request_.target_error, 1e-15}); }
 
   /// What it means to have s columns: all that was asked for, unless that was an error.

@@ -22,6 +22,8 @@ class UpdatableCholesky {
   /// Removes row and column k; those behind move up. O((size − k)²).
   void remove(Index k);
   void clear() { size_ = 0; }
+  /// The smallest diagonal entry of R, at most 1: about 1/cond(A) for G = AᵀA. 1 if empty.
+  double smallest_pivot() const { return size_ > 0 ? R_.diagonal().head(size_).minCoeff() : 1; }
   /// G⁻¹ c. O(size²).
   Vector solve(VectorIn c) const;
 
