@@ -208,10 +208,11 @@ bool SupernodalFactor::eliminate(int s, const double* A_values, std::vector<Fron
     const auto add_columns = [&](Index begin, Index end) {
       for (Index j = begin; j < end; ++j) {
         const double* const from = values + j * size;
-        double* const to = place[j] < width
-                               ? block + static_cast<std::size_t>(place[j]) * height
-                               : update.get() + static_cast<std::size_t>(place[j] - width) * below - width;
-        for (int i = static_cast<int>(j); i < size; ++i) to[place[i]] += from[i];
+        const bool own = place[j] < width;
+        const int skipped = own ? 0 : width;
+        double* const to = own ? block + static_cast<std::size_t>(place[j]) * height
+                               : update.get() + static_cast<std::size_t>(place[j] - width) * below;
+        for (int i = static_cast<int>(j); i < size; ++i) to[place[i] - skipped] += from[i];
       }
     };
     if (in_tiles && size > 2 * tile)
@@ -444,11 +445,11 @@ void SupernodalFactor::solve_panel(MatrixIn B, MatrixOut X) const {
   const auto forward = [&](int s, bool in_tiles, double* above) {
     const Index width = pattern_.width(s), height = pattern_.height(s);
     const double* const block = values_.get() + value_start_[s];
-    const int* const target = target_.data() + place_start_[s] - width;
+    const int* const target = target_.data() + place_start_[s];
     double* const own = x + static_cast<Index>(pattern_.first_column[s]) * lanes;
     solve_lower<lanes>(block, height, width, solve_columns, in_tiles, own);
     ranges(in_tiles, height - width, solve_rows_in_tile, [&](Index begin, Index end) {
-      subtract_rows<lanes>(block, height, width + begin, width + end, width, own, [&](Index i) {
+      subtract_rows<lanes>(block + width, height, begin, end, width, own, [&](Index i) {
         return target[i] >= 0 ? row<lanes>(x, target[i]) : row<lanes>(above, -1 - target[i]);
       });
     });
