@@ -11,8 +11,8 @@ namespace supple {
 
 /// Collects output under a temporary name in the target's folder; commit() brings it to the disk and then
 /// gives it the target's name in one step. Until then, and after any failure, the old file stands as it was
-/// and nothing partial remains. Symbolic links are followed. \throws InputError naming the file and the
-/// system's reason, from every member but the destructor.
+/// and nothing partial remains. Symbolic links are followed.
+/// \throws InputError naming the file and the system's reason, from every member but the destructor.
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);

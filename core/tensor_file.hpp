@@ -45,8 +45,9 @@ class TensorFileWriter {
   /// Free text of the file, UTF-8; keys that start with "supple." are the file's own.
   std::map<std::string, std::string> metadata;
 
-  /// Adds an array of any rank, row-major. \throws std::invalid_argument if the name is empty, reserved or
-  /// taken, or the shape does not fit the number of values.
+  /// Adds an array of any rank, row-major.
+  /// \throws std::invalid_argument if the name is empty, reserved or taken, or the shape does not fit the
+  /// number of values.
   template <TensorScalar T>
   void add(std::string name, std::span<const T> values, std::vector<Index> shape) {
     add_bytes(std::move(name), dtype_of<T>, std::as_bytes(values), std::move(shape));
@@ -73,8 +74,8 @@ class TensorFileWriter {
   }
 
   /// Writes all arrays. The new file takes the old one's name only when it is safely on the disk; after a
-  /// failure the old file stands and nothing partial remains. Writing again gives the same bytes. \throws
-  /// InputError if the file cannot be written; std::invalid_argument if a text is not UTF-8 or a key
+  /// failure the old file stands and nothing partial remains. Writing again gives the same bytes.
+  /// \throws InputError if the file cannot be written; std::invalid_argument if a text is not UTF-8 or a key
   /// reserved.
   void write(const std::filesystem::path& path) const;
 
@@ -97,8 +98,9 @@ enum class Checksums {
 /// A file written by TensorFileWriter, mapped into memory. Everything is checked on opening, so a truncated,
 /// foreign, newer or damaged file never gets further. Arrays are views into the file: they live as long as
 /// this object, and the file must not be shortened meanwhile (TensorFileWriter never does: it replaces
-/// files). \throws InputError naming the file, the array and what was expected, from the constructor and
-/// every access.
+/// files).
+/// \throws InputError naming the file, the array and what was expected, from the constructor and every
+/// access.
 class TensorFile {
  public:
   explicit TensorFile(const std::filesystem::path& path, Checksums checksums = Checksums::Verify);

@@ -24,8 +24,8 @@ enum class ColourMap {
   Diverging,   ///< blue to red through light grey, equally dark on both sides: deviations from a middle
 };
 
-/// The colour of `share` in [0, 1] (clamped; a NaN is grey). \see Ottosson 2020 (Oklab, the space of equal
-/// steps).
+/// The colour of `share` in [0, 1] (clamped; a NaN is grey).
+/// \see Ottosson 2020 (Oklab, the space of equal steps).
 Colour map_colour(ColourMap map, double share);
 
 }  // namespace supple

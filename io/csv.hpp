@@ -37,8 +37,9 @@ class CsvTable {
   Index num_rows() const { return static_cast<Index>(rows_.size()); }
   const std::vector<Column>& columns() const { return columns_; }
   bool contains(std::string_view name) const;
-  /// The numbers of a column, for all rows. \throws InputError naming file, line and cell if one is not a
-  /// number, or the columns that are there if this one is not.
+  /// The numbers of a column, for all rows.
+  /// \throws InputError naming file, line and cell if one is not a number, or the columns that are there if
+  /// this one is not.
   Vector numbers(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;
 
@@ -61,7 +62,8 @@ class CsvTable {
 void write_csv(const std::filesystem::path& path, const CsvTable& table);
 
 /// Reads a table as write_csv writes it; other programs' tables, too, if every row has a cell for each
-/// column. \throws InputError naming file, line and expectation.
+/// column.
+/// \throws InputError naming file, line and expectation.
 CsvTable read_csv(const std::filesystem::path& path);
 
 }  // namespace supple

@@ -53,8 +53,8 @@ class JsonFields {
   /// Where this object stands, "/springs/2"; empty for the outermost.
   const std::string& place() const { return place_; }
 
-  /// A finite number in `unit`, or a text with another unit of the same kind, like "200 kPa". \see
-  /// parse_quantity
+  /// A finite number in `unit`, or a text with another unit of the same kind, like "200 kPa".
+  /// \see parse_quantity
   double number(std::string_view key, const Interval& range = any_number, std::string_view unit = "") const;
   Index integer(std::string_view key, const Interval& range = any_number) const;
   bool flag(std::string_view key) const;

@@ -27,8 +27,8 @@ struct VtuFields {
 
 /// Writes an UnstructuredGrid of tetrahedra or triangles, arrays in raw binary after the XML; positions in m.
 /// \throws std::invalid_argument if a field has not one row a node or cell, two fields of one kind have the
-/// same name or a cell reads a node that is not there; InputError if the file cannot be written. \see VTK
-/// File Formats, "XML File Formats", Kitware.
+/// same name or a cell reads a node that is not there; InputError if the file cannot be written.
+/// \see VTK File Formats, "XML File Formats", Kitware.
 void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const Tet> tets,
                const VtuFields& fields = {});
 void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const Triangle> triangles,
@@ -42,8 +42,8 @@ class VtuSeries {
   /// Starts an empty series. \throws InputError if the path does not end in .pvd or cannot be written.
   explicit VtuSeries(std::filesystem::path pvd);
 
-  /// Writes one more frame. \throws std::invalid_argument if time [s] is not after the last one; as
-  /// write_vtu.
+  /// Writes one more frame.
+  /// \throws std::invalid_argument if time [s] is not after the last one; as write_vtu.
   void add(double time, const Points& nodes, std::span<const Tet> tets, const VtuFields& fields = {});
   void add(double time, const Points& nodes, std::span<const Triangle> triangles,
            const VtuFields& fields = {});

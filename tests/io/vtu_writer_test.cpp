@@ -46,7 +46,7 @@ struct VtuWriter : testing::Test {
     std::uint64_t bytes;
     std::memcpy(&bytes, file.data() + block, 8);
     std::vector<T> values(bytes / sizeof(T));
-    std::memcpy(values.data(), file.data() + block + 8, bytes);
+    if (bytes > 0) std::memcpy(values.data(), file.data() + block + 8, bytes);
     return values;
   }
 
