@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+
+namespace supple {
+
+/// `supple compare`: how far one trajectory is from another, the reference.
+struct CompareCommand {
+  std::filesystem::path first, reference;  ///< files or folders of `supple simulate`
+  std::filesystem::path output;            ///< folder; empty: only the report
+  std::filesystem::path json;
+  int threads = 0;
+
+  void run() const;
+};
+
+}  // namespace supple

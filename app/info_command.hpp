@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace supple {
+
+/// `supple info`: what a model or a mesh holds.
+struct InfoCommand {
+  std::string source;  ///< model, mesh file or built-in
+  std::filesystem::path json;
+
+  void run() const;
+};
+
+/// `supple mesh`: a built-in or a file as .vtu.
+struct MeshCommand {
+  std::string source;
+  std::filesystem::path output;
+
+  void run() const;
+};
+
+}  // namespace supple

@@ -1,0 +1,34 @@
+#pragma once
+/// \file Reports for machines, and the checks that spare a user a long wait before a file cannot be written.
+
+#include <core/types.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace supple {
+
+using Json = nlohmann::ordered_json;  ///< keeps the order of the keys; NaN is written as null
+
+/// To a file, or to stdout if the path is "-"; nothing if it is empty.
+void write_json(const std::filesystem::path& path, const Json& report);
+inline bool is_stdout(const std::filesystem::path& path) {
+  return path == "-";
+}
+
+Json json_numbers(VectorIn values);
+Json json_seconds(const std::vector<std::pair<std::string, double>>& seconds, double total);
+
+/// \throws InputError if a file could not be created at this path; "-" and no path always pass.
+void require_writable(const std::filesystem::path& path);
+/// Creates the folder, with those above it. \throws InputError naming it and the reason.
+void make_folder(const std::filesystem::path& folder);
+
+/// The value of an option such as "2 MPa" in `unit`. \throws InputError naming the option.
+double option_quantity(std::string_view option, std::string_view text, std::string_view unit);
+
+}  // namespace supple

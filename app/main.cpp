@@ -1,0 +1,264 @@
+#include <app/compare_command.hpp>
+#include <app/exit_guard.hpp>
+#include <app/info_command.hpp>
+#include <app/reduce_command.hpp>
+#include <app/simulate_command.hpp>
+#include <app/terminal.hpp>
+#include <core/check.hpp>
+#include <io/builtin_meshes.hpp>
+#include <physics/solid.hpp>
+#include <sparse/selector_library.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <new>
+
+namespace {
+
+using namespace supple;
+
+void add_json(CLI::App& app, std::filesystem::path& json) {
+  app.add_option("--json", json, "Report for machines; '-': to stdout, instead of the text")
+      ->type_name("FILE");
+}
+
+void add_threads(CLI::App& app, int& threads) {
+  app.add_option("--threads", threads, "Threads; 0: one for each processor. Results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(0, 4096));
+}
+
+CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
+  CLI::App& reduce = *app.add_subcommand("reduce", "Make a reduced model of a mesh");
+  const auto files = "Output";
+  reduce
+      .add_option("MESH", c.mesh, "Mesh file (.msh .mesh .node .ele .veg .vtk .vtu) or built-in, see below")
+      ->required();
+  reduce.add_option("-o,--output", c.model, "The model's file")->required()->type_name("MODEL")->group(files);
+  add_json(reduce, c.json);
+  reduce.get_option("--json")->group(files);
+  reduce.add_option("--picture", c.picture, "Picture of the object and the selected tets")
+      ->type_name("FILE.png")
+      ->group(files);
+  reduce.add_option("--plots", c.plots, "Folder for plots of the errors and of the frequencies")
+      ->type_name("DIR")
+      ->group(files);
+
+  const auto object = "Object";
+  reduce.add_option("--material", c.law, "Law: stvk or mooney-rivlin")
+      ->capture_default_str()
+      ->check(CLI::IsMember(material_laws()))
+      ->group(object);
+  reduce.add_option("--young", c.young, "Young's modulus [Pa], or with a unit: '2 MPa'")
+      ->capture_default_str()
+      ->group(object);
+  reduce.add_option("--poisson", c.poisson, "Poisson's ratio")->capture_default_str()->group(object);
+  reduce.add_option("--density", c.density, "Density [kg/m^3]")->capture_default_str()->group(object);
+  reduce
+      .add_option("--materials", c.materials,
+                  "Other values for regions: {\"regions\": {\"bone\": {\"young\": \"1 MPa\"}}}")
+      ->type_name("FILE.json")
+      ->group(object);
+  reduce.add_option("--damping-alpha", c.damping_alpha, "Rayleigh damping, share of the mass [1/s]")
+      ->capture_default_str()
+      ->group(object);
+  reduce.add_option("--damping-beta", c.damping_beta, "Rayleigh damping, share of the stiffness [s]")
+      ->capture_default_str()
+      ->group(object);
+  const auto each = [&](auto& values, const char* name, const char* type, const char* help) {
+    reduce.add_option(name, values, help)->type_name(type)->expected(1)->take_all()->group(object);
+  };
+  each(c.fix, "--fix", "RULE",
+       "Hold nodes, e.g. 'y<4%' (of the bounding box) or 'x>=0.25' [m]; may be repeated");
+  each(c.fix_box, "--fix-box", "BOX", "Hold the nodes in a box x,y,z:x,y,z [m]; may be repeated");
+  each(c.fix_file, "--fix-file", "FILE", "Hold the nodes that a file lists, one index a line, from 0");
+  each(c.fix_region, "--fix-region", "TAG", "Hold the nodes of a region, by name or number");
+
+  const auto method = "Method";
+  reduce.add_option("--recipe", c.recipe, "Where unset options come from: default, or paper")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"default", "paper"}))
+      ->group(method);
+  reduce
+      .add_option("--subspace", c.subspace, "extended (modes under all linear maps) or modal (modes alone)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"extended", "modal"}))
+      ->group(method);
+  reduce.add_option("--modes", c.modes, "Vibration modes, rigid ones included [15]")
+      ->type_name("R")
+      ->group(method);
+  reduce.add_option("--points", c.points, "Largest number of tets that stand for all [150]")
+      ->type_name("S")
+      ->group(method);
+  reduce.add_option("--target-error", c.target_error, "Stop at this training error")
+      ->type_name("SHARE")
+      ->group(method);
+  reduce.add_option("--selector", c.selector, "How they are chosen")
+      ->check(CLI::IsMember(selector_names()))
+      ->group(method);
+  reduce.add_option("--poses", c.poses, "Training poses [300; paper: 1000]")->type_name("T")->group(method);
+  reduce
+      .add_option("--amplitude", c.amplitudes,
+                  "Rms displacement of a pose as a share of the diagonal; repeat for a mix [0.05, 0.017, "
+                  "0.005; paper: 0.065]")
+      ->type_name("SHARE")
+      ->expected(1)
+      ->take_all()
+      ->group(method);
+  reduce
+      .add_option("--omega-exponent", c.omega_exponent,
+                  "Poses have deviations ~ 1/omega^E in each mode [2; paper: 1]")
+      ->type_name("E")
+      ->group(method);
+  reduce.add_option("--norm", c.norm, "Measure of the fitted forces [stiffness; paper: mass]")
+      ->check(CLI::IsMember({"mass", "stiffness"}))
+      ->group(method);
+  reduce.add_option("--inverted", c.inverted, "Poses with inverted tets [keep; mooney-rivlin: shrink]")
+      ->check(CLI::IsMember({"keep", "shrink", "redraw"}))
+      ->group(method);
+  reduce
+      .add_option("--poses-file", c.poses_file,
+                  "Poses instead of random ones: .npy, tensor file or trajectory")
+      ->type_name("FILE")
+      ->group(method);
+  reduce
+      .add_option("--held-out", c.held_out,
+                  "Fresh poses to measure the error on, at each of three amplitudes; 0: none [100]")
+      ->type_name("N")
+      ->group(method);
+  reduce.add_option("--seed", c.seed, "Of all random choices")->capture_default_str()->group(method);
+  add_threads(reduce, c.threads);
+  reduce.footer("Built-in meshes:\n" + std::string(builtin_mesh_help) +
+                "\nExamples:\n"
+                "supple reduce dragon.msh -o dragon.supple --fix 'y<4%' --points 150\n"
+                "supple reduce octopus -o octopus.supple --fix 'y<4%' --picture octopus.png --json -");
+  return reduce;
+}
+
+CLI::App& add_simulate(CLI::App& app, SimulateCommand& c) {
+  CLI::App& simulate =
+      *app.add_subcommand("simulate", "Run a scene with a reduced model, or with the full one");
+  simulate.add_option("MODEL", c.model, "Model that 'supple reduce' made")->required();
+  simulate
+      .add_option("--scene", c.scene,
+                  "Loads and springs over time, see docs/scene.md; without: pulled, then released")
+      ->type_name("FILE.json");
+  simulate.add_flag("--full", c.full, "Run the unreduced system instead: all nodes, Newton's method");
+  simulate.add_option("--time", c.time, "Duration [s], instead of the scene's")->type_name("T");
+  simulate.add_option("--step", c.step, "Time step [s], instead of the scene's")->type_name("H");
+  simulate.add_option("--solver", c.solver, "Nonlinear solver [broyden; full: newton]")
+      ->check(CLI::IsMember({"newton", "broyden"}));
+  simulate.add_option("--tolerance", c.tolerance, "Relative residual of a step [1e-6]")
+      ->type_name("SHARE")
+      ->check(CLI::PositiveNumber);
+  simulate
+      .add_option("-o,--output", c.output,
+                  "Folder for trajectory, energies, pictures and ParaView's series.pvd")
+      ->type_name("DIR");
+  simulate.add_option("--every", c.every, "A frame after so many steps [at most 100 frames]")->type_name("N");
+  simulate.add_option("--frames", c.frames, "What ParaView gets: surface, tets or none")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"surface", "tets", "none"}));
+  simulate
+      .add_option("--track", c.track, "Node whose displacement is recorded in every step; may be repeated")
+      ->type_name("NODE")
+      ->expected(1)
+      ->take_all();
+  add_json(simulate, c.json);
+  add_threads(simulate, c.threads);
+  simulate.footer(
+      "Examples:\n"
+      "supple simulate octopus.supple -o run\n"
+      "supple simulate octopus.supple --full --time 0.1 -o full\n"
+      "supple simulate dragon.supple --scene pull.json --step '2 ms' --json -");
+  return simulate;
+}
+
+CLI::App& add_compare(CLI::App& app, CompareCommand& c) {
+  CLI::App& compare = *app.add_subcommand("compare", "Measure how far one trajectory is from another");
+  compare.add_option("FIRST", c.first, "Folder or trajectory file of 'supple simulate'")->required();
+  compare.add_option("REFERENCE", c.reference, "What it is compared with")->required();
+  compare.add_option("-o,--output", c.output, "Folder for errors.csv, errors.png and comparison.png")
+      ->type_name("DIR");
+  add_json(compare, c.json);
+  add_threads(compare, c.threads);
+  compare.footer(
+      "Frames count at times that both have, up to the end of the shorter one; errors are root mean squares "
+      "over\n"
+      "nodes (by mass) and frames, relative to the reference.\n"
+      "\nExample:\nsupple compare run full -o comparison");
+  return compare;
+}
+
+CLI::App& add_info(CLI::App& app, InfoCommand& c) {
+  CLI::App& info = *app.add_subcommand("info", "Say what a model or a mesh holds");
+  info.add_option("SOURCE", c.source, "Model, mesh file or built-in mesh")->required();
+  add_json(info, c.json);
+  return info;
+}
+
+CLI::App& add_mesh(CLI::App& app, MeshCommand& c) {
+  CLI::App& mesh = *app.add_subcommand("mesh", "Write a built-in or other mesh for ParaView");
+  mesh.add_option("SOURCE", c.source, "Mesh file or built-in mesh")->required();
+  mesh.add_option("-o,--output", c.output, "File to write")->required()->type_name("FILE.vtu");
+  mesh.footer("Built-in meshes:\n" + std::string(builtin_mesh_help));
+  return mesh;
+}
+
+/// Messages of any origin on one line.
+int fail(int code, std::string message) {
+  while (!message.empty() && message.back() == '\n') message.pop_back();
+  for (std::size_t at; (at = message.find('\n')) != std::string::npos;) message.replace(at, 1, "; ");
+  clear_progress();
+  std::fflush(stdout);
+  std::fprintf(stderr, "supple: %s\n", message.c_str());
+  return code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Supple: reduced deformable objects, from a mesh to a real-time model with a measured error",
+               "supple"};
+  app.set_version_flag("--version", "supple " SUPPLE_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Examples:\n"
+      "supple reduce octopus -o octopus.supple --fix 'y<4%'\n"
+      "supple info octopus.supple\n"
+      "supple simulate octopus.supple -o run\n"
+      "supple simulate octopus.supple --full --time 0.1 -o full\n"
+      "supple compare run full -o comparison\n"
+      "\n'supple COMMAND --help' says more.");
+  ReduceCommand reduce;
+  SimulateCommand simulate;
+  CompareCommand compare;
+  InfoCommand info;
+  MeshCommand mesh;
+  add_reduce(app, reduce).callback([&] { reduce.run(); });
+  add_simulate(app, simulate).callback([&] { simulate.run(); });
+  add_compare(app, compare).callback([&] { compare.run(); });
+  add_info(app, info).callback([&] { info.run(); });
+  add_mesh(app, mesh).callback([&] { mesh.run(); });
+  try {
+    app.parse(argc, argv);
+    return std::fflush(stdout) == 0 ? 0 : fail(1, "stdout cannot be written");
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return app.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    return fail(2, error.what());
+  } catch (const InputError& error) {
+    return fail(2, error.what());
+  } catch (const std::invalid_argument& error) {
+    return fail(2, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(1, "there is not enough memory");
+  } catch (const std::exception& error) {
+    return fail(1, error.what());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  supple::watch_for_signals();
+  return run(argc, argv);
+}

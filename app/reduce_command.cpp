@@ -1,0 +1,339 @@
+#include <app/exit_guard.hpp>
+#include <app/json_report.hpp>
+#include <app/mesh_source.hpp>
+#include <app/pose_file.hpp>
+#include <app/reduce_command.hpp>
+#include <app/surface.hpp>
+#include <app/terminal.hpp>
+#include <core/parallel.hpp>
+#include <core/stopwatch.hpp>
+#include <io/json_fields.hpp>
+#include <io/node_sets.hpp>
+#include <io/plot.hpp>
+#include <reduction/reduce.hpp>
+
+#include <algorithm>
+#include <numbers>
+#include <set>
+
+namespace supple {
+
+namespace {
+
+std::vector<Index> fixed_nodes(const ReduceCommand& command, const TetMesh& mesh) {
+  std::set<Index> nodes;
+  const auto fix = [&](const std::vector<Index>& some) { nodes.insert(some.begin(), some.end()); };
+  for (const std::string& rule : command.fix) fix(select_nodes(mesh, rule));
+  for (const std::string& box : command.fix_box) fix(nodes_in_box(mesh, box));
+  for (const std::string& region : command.fix_region) fix(nodes_of_region(mesh, region));
+  for (const std::filesystem::path& file : command.fix_file) fix(read_node_set(mesh, file));
+  return {nodes.begin(), nodes.end()};
+}
+
+struct Material {
+  IsotropicModuli moduli;
+  double density = 0;
+};
+
+/// One material for the object, and others for the regions that the file of --materials names.
+void set_materials(const ReduceCommand& command, Solid& solid) {
+  const Material base{
+      {option_quantity("--young", command.young, "Pa"), option_quantity("--poisson", command.poisson, "1")},
+      option_quantity("--density", command.density, "kg/m^3")};
+  std::vector<Material> materials{base};
+  const TetMesh& mesh = solid.mesh;
+  if (command.materials) {
+    if (mesh.region.empty())
+      throw InputError(command.materials->string() +
+                       ": the mesh has no regions, so there is nothing to tell apart");
+    const JsonFields file = JsonFields::read(*command.materials), regions = file.object("regions");
+    std::map<int, std::int32_t> material_of_region;
+    for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end())) {
+      material_of_region[tag] = 0;
+      const auto name = mesh.region_names.find(tag);
+      for (const std::string& key :
+           {name == mesh.region_names.end() ? "" : name->second, std::to_string(tag)})
+        if (!key.empty() && regions.contains(key)) {
+          const JsonFields fields = regions.object(key);
+          material_of_region[tag] = static_cast<std::int32_t>(materials.size());
+          materials.push_back({{fields.number_or("young", base.moduli.young, positive, "Pa"),
+                                fields.number_or("poisson", base.moduli.poisson, between(-1, 0.5))},
+                               fields.number_or("density", base.density, positive, "kg/m^3")});
+          break;
+        }
+    }
+    file.finish();
+    for (const int tag : mesh.region) solid.material_of_tet.push_back(material_of_region[tag]);
+    solid.density.resize(mesh.num_tets());
+    for (Index e = 0; e < mesh.num_tets(); ++e)
+      solid.density[e] = materials[solid.material_of_tet[e]].density;
+  } else {
+    solid.density = Vector::Constant(1, base.density);
+  }
+  solid.law = command.law;
+  for (std::size_t k = 0; k < materials.size(); ++k) {
+    const std::vector<double> row = law_parameters(command.law, materials[k].moduli);
+    solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
+    for (std::size_t j = 0; j < row.size(); ++j) solid.parameters(k, j) = row[j];
+  }
+}
+
+InvertedPoses inverted_poses(const std::string& word) {
+  return word == "keep"     ? InvertedPoses::Keep
+         : word == "shrink" ? InvertedPoses::Shrink
+                            : InvertedPoses::Redraw;
+}
+
+ReduceOptions reduce_options(const ReduceCommand& command) {
+  ReduceOptions options = command.recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
+  options.subspace = command.subspace;
+  options.seed = command.seed;
+  if (command.modes) options.modes = *command.modes;
+  if (command.poses) options.poses.count = *command.poses;
+  if (command.points) options.points = *command.points;
+  if (command.held_out) options.held_out_poses = *command.held_out;
+  if (command.target_error) options.target_error = *command.target_error;
+  if (command.omega_exponent) options.poses.omega_exponent = *command.omega_exponent;
+  if (!command.amplitudes.empty()) options.poses.amplitudes = command.amplitudes;
+  if (command.selector) options.selector = *command.selector;
+  if (command.norm) options.norm = *command.norm == "mass" ? ForceNorm::Mass : ForceNorm::Stiffness;
+  if (command.inverted) options.poses.inverted = inverted_poses(*command.inverted);
+  if (command.poses_file) options.given_poses = read_poses(*command.poses_file);
+  return options;
+}
+
+const char* to_text(ForceNorm norm) {
+  return norm == ForceNorm::Mass ? "mass" : "stiffness";
+}
+const char* to_text(InvertedPoses rule) {
+  return rule == InvertedPoses::Keep ? "keep" : rule == InvertedPoses::Shrink ? "shrink" : "redraw";
+}
+
+/// What made the model, and nothing that differs between two runs of the same job.
+Json options_json(const ReduceCommand& command, const ReduceOptions& options) {
+  Json json{{"recipe", command.recipe},
+            {"subspace", options.subspace},
+            {"modes", options.modes},
+            {"poses", options.poses.count},
+            {"points", options.points},
+            {"target_error", options.target_error},
+            {"selector", options.selector},
+            {"norm", to_text(options.norm)},
+            {"omega_exponent", options.poses.omega_exponent},
+            {"amplitudes", options.poses.amplitudes},
+            {"inverted", to_text(options.poses.inverted)},
+            {"held_out", options.held_out_poses},
+            {"seed", options.seed},
+            {"material", command.law},
+            {"young", command.young},
+            {"poisson", command.poisson},
+            {"density", command.density},
+            {"damping_alpha", command.damping_alpha},
+            {"damping_beta", command.damping_beta},
+            {"fix", command.fix},
+            {"fix_box", command.fix_box},
+            {"fix_region", command.fix_region}};
+  const auto add_files = [&](const char* key, const std::vector<std::filesystem::path>& files) {
+    for (const std::filesystem::path& file : files) json[key].push_back(file.string());
+  };
+  add_files("fix_file", command.fix_file);
+  if (command.materials) json["materials"] = command.materials->string();
+  if (command.poses_file) json["poses_file"] = command.poses_file->string();
+  return json;
+}
+
+Json report_json(const ReduceCommand& command, const ReduceOptions& options, const NamedMesh& named,
+                 const ReducedModel& model, const ReduceReport& report) {
+  Json json;
+  json["command"] = "reduce";
+  json["version"] = SUPPLE_VERSION;
+  json["mesh"] = {{"source", command.mesh},
+                  {"format", named.notes.format},
+                  {"nodes", report.nodes},
+                  {"tets", report.tets},
+                  {"fixed_nodes", report.fixed_nodes},
+                  {"mass", model.solid.nodal_mass().sum()},
+                  {"diagonal", bounding_box(model.solid.mesh.nodes).diagonal()},
+                  {"warnings", named.notes.warnings}};
+  json["dimension"] = report.dimension;
+  json["points"] = report.points;
+  json["training_error"] = report.training_error;
+  json["held_out_error"] = report.held_out_error;
+  json["held_out"] = Json::array();
+  const double largest = *std::max_element(options.poses.amplitudes.begin(), options.poses.amplitudes.end());
+  for (const auto& [share, error] : report.held_out)
+    json["held_out"].push_back({{"share", share}, {"amplitude", share * largest}, {"error", error}});
+  json["poses"] = {{"count", report.poses},
+                   {"inverted", report.inverted_poses},
+                   {"redrawn", report.redrawn_poses},
+                   {"shrunk", report.shrunk_poses}};
+  json["modes"] = {
+      {"omega", json_numbers(report.omega)}, {"rigid", report.rigid_modes}, {"dropped", report.dropped}};
+  json["eigenvalues"] = {{"fitted", json_numbers(report.fitted_eigenvalues)},
+                         {"exact", json_numbers(report.exact_eigenvalues)}};
+  const SelectionReport& selection = report.selection;
+  Json history = Json::array();
+  for (const SelectionStep& step : selection.history)
+    history.push_back({{"points", step.size},
+                       {"training_error", step.training_error},
+                       {"held_out_error", step.held_out_error},
+                       {"seconds", step.seconds},
+                       {"columns_evaluated", step.columns_evaluated}});
+  json["selection"] = {{"selector", options.selector},
+                       {"status", to_string(selection.status)},
+                       {"stop_reason", selection.stop_reason},
+                       {"iterations", selection.iterations},
+                       {"residual", selection.residual},
+                       {"kkt_residual", selection.kkt_residual},
+                       {"columns_evaluated", selection.columns_evaluated},
+                       {"history", std::move(history)}};
+  json["notes"] = report.notes;
+  json["options"] = options_json(command, options);
+  json["seed"] = options.seed;
+  json["threads"] = num_threads();
+  json["model"] = command.model.string();
+  return json;
+}
+
+/// The object with its selected tets as balls.
+void draw_selection(const std::filesystem::path& path, const ReducedModel& model,
+                    const ReduceReport& report) {
+  const TetMesh& mesh = model.solid.mesh;
+  Points centres(static_cast<Index>(model.indices.size()), 3);
+  for (std::size_t k = 0; k < model.indices.size(); ++k) {
+    const Tet& tet = mesh.tets[model.indices[k]];
+    centres.row(k) = 0.25 * (mesh.nodes.row(tet[0]) + mesh.nodes.row(tet[1]) + mesh.nodes.row(tet[2]) +
+                             mesh.nodes.row(tet[3]));
+  }
+  const Surface surface(mesh);
+  PictureObject object{.positions = surface.rows(mesh.nodes), .triangles = surface.triangles};
+  object.markers = centres;
+  object.caption = std::to_string(report.points) + " of " + shown_count(report.tets) +
+                   " tets, training error " + shown_percent(report.training_error, 2);
+  write_picture(path, {object});
+}
+
+void draw_error_history(const std::filesystem::path& path, const ReduceReport& report) {
+  const std::vector<SelectionStep>& history = report.selection.history;
+  const Index count = static_cast<Index>(history.size());
+  if (count == 0) return;
+  PlotSeries training{"training poses", Vector(count), Vector(count), PlotStyle::LinePoints};
+  for (Index k = 0; k < count; ++k) {
+    training.x[k] = static_cast<double>(k + 1);
+    training.y[k] = 100 * history[k].training_error;
+  }
+  Plot plot{.title = "Force error while choosing " + std::to_string(report.points) + " of " +
+                     shown_count(report.tets) + " tets",
+            .x = {.label = "iteration"},
+            .y = {.label = "relative force error [%]", .scale = Scale::Log},
+            .series = {training}};
+  PlotSeries held_out = training;
+  held_out.name = "held-out poses, largest amplitude";
+  for (Index k = 0; k < count; ++k) held_out.y[k] = 100 * history[k].held_out_error;
+  if (!held_out.y.array().isNaN().all()) plot.series.push_back(held_out);
+  const ExitGuard guard;
+  draw_plot(path, plot);
+}
+
+void draw_spectrum(const std::filesystem::path& path, const ReduceReport& report) {
+  const auto hertz = [](const Vector& eigenvalues) -> Vector {
+    return eigenvalues.cwiseMax(0).cwiseSqrt() / (2 * std::numbers::pi);
+  };
+  const Vector number = Vector::LinSpaced(report.exact_eigenvalues.size(), 1,
+                                          static_cast<double>(report.exact_eigenvalues.size()));
+  const ExitGuard guard;
+  draw_plot(path, {.title = "Softest frequencies of the reduced model at rest",
+                   .x = {.label = "flexible mode", .low = 0.5, .high = number.size() + 0.5},
+                   .y = {.label = "frequency [Hz]", .low = 0.0},
+                   .series = {{"all tets", number, hertz(report.exact_eigenvalues), PlotStyle::LinePoints},
+                              {std::to_string(report.points) + " selected tets", number,
+                               hertz(report.fitted_eigenvalues), PlotStyle::Points}}});
+}
+
+void print_summary(const ReduceCommand& command, const ReducedModel& model, const ReduceReport& report) {
+  Rows rows{
+      {"object", shown_count(report.nodes) + " nodes, " + shown_count(report.tets) + " tets, " +
+                     (report.fixed_nodes > 0 ? shown_count(report.fixed_nodes) + " nodes fixed" : "free")},
+      {"subspace", "dimension " + std::to_string(report.dimension) + " from " +
+                       std::to_string(report.omega.size()) + " modes" +
+                       (report.rigid_modes > 0 ? " (" + std::to_string(report.rigid_modes) + " rigid)" : "")},
+      {"points", std::to_string(report.points) + " tets"},
+      {"training error", shown_percent(report.training_error)}};
+  std::string held_out;
+  for (const auto& [share, error] : report.held_out)
+    held_out += (held_out.empty() ? "" : ", ") + shown_percent(error) +
+                (share < 1 ? " at " + shown(share) + " of the amplitude" : "");
+  rows.emplace_back("held-out error", held_out.empty() ? "not measured" : held_out);
+  if (report.exact_eigenvalues.size() > 0)
+    rows.emplace_back(
+        "softest eigenvalue",
+        shown_percent(report.fitted_eigenvalues[0] / report.exact_eigenvalues[0] - 1, 2) + " off");
+  rows.emplace_back("selection", std::to_string(report.selection.iterations) + " iterations, " +
+                                     report.selection.stop_reason);
+  rows.emplace_back("peak memory", shown_bytes(report.peak_memory));
+  rows.emplace_back("model", command.model.string());
+  print_rows(stdout, "reduced model of " + model.provenance.at("mesh"), rows);
+  print_stages(stdout, report.seconds, report.total_seconds);
+}
+
+}  // namespace
+
+void ReduceCommand::run() const {
+  set_num_threads(threads);
+  for (const std::filesystem::path& file : {model, json, picture}) require_writable(file);
+  const Stopwatch total;
+  Stopwatch watch;
+  const NamedMesh named = load_mesh(mesh);
+  for (const std::string& warning : named.notes.warnings) warn(mesh + ": " + warning);
+  Solid solid;
+  solid.mesh = named.mesh;
+  solid.fixed_nodes = fixed_nodes(*this, solid.mesh);
+  solid.damping = {option_quantity("--damping-alpha", damping_alpha, "1/s"),
+                   option_quantity("--damping-beta", damping_beta, "s")};
+  if (solid.damping.alpha < 0 || solid.damping.beta < 0)
+    throw InputError("damping is negative, expected 0 or more");
+  set_materials(*this, solid);
+  const ReduceOptions options = reduce_options(*this);
+  if (!plots.empty()) make_folder(plots);
+  const double read_seconds = watch.seconds();
+
+  ReduceReport report;
+  ReducedModel result = reduce(solid, options, &report, progress_bar());
+  clear_progress();
+  result.provenance = {{"version", SUPPLE_VERSION},
+                       {"mesh", mesh},
+                       {"seed", std::to_string(options.seed)},
+                       {"options", options_json(*this, options).dump()},
+                       {"training_error", exact(report.training_error)},
+                       {"held_out_error", exact(report.held_out_error)}};
+  for (const std::string& note : report.notes) warn(note);
+  if (options.target_error > 0 && report.training_error > options.target_error)
+    warn("the training error is " + shown_percent(report.training_error) + ", not " +
+         shown_percent(options.target_error) + ": allow more --points than " +
+         std::to_string(options.points));
+
+  watch.restart();
+  {
+    const ExitGuard guard;
+    save_model(model, result);
+  }
+  report.seconds.insert(report.seconds.begin(), {"read mesh", read_seconds});
+  report.seconds.emplace_back("write model", watch.seconds());
+  watch.restart();
+  if (!picture.empty()) draw_selection(picture, result, report);
+  if (!plots.empty()) {
+    draw_error_history(plots / "error.png", report);
+    draw_spectrum(plots / "spectrum.png", report);
+  }
+  if (!picture.empty() || !plots.empty()) report.seconds.emplace_back("pictures", watch.seconds());
+  report.total_seconds = total.seconds();
+  report.peak_memory = peak_resident_memory();
+
+  Json json_report = report_json(*this, options, named, result, report);
+  json_report["seconds"] = json_seconds(report.seconds, report.total_seconds);
+  json_report["peak_memory"] = report.peak_memory;
+  if (!is_stdout(json)) print_summary(*this, result, report);
+  write_json(json, json_report);
+}
+
+}  // namespace supple

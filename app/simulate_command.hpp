@@ -1,0 +1,30 @@
+#pragma once
+
+#include <core/types.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace supple {
+
+/// `supple simulate`: options override the scene, the scene overrides the defaults.
+struct SimulateCommand {
+  std::filesystem::path model;
+  std::optional<std::filesystem::path> scene;  ///< none: pluck_scene
+  bool full = false;                           ///< the unreduced system
+  std::optional<std::string> time, step;
+  std::optional<std::string> solver;
+  std::optional<double> tolerance;
+  std::optional<Index> every;
+  std::vector<Index> track;
+  std::string frames = "surface";  ///< surface, tets or none
+  std::filesystem::path output;    ///< folder; empty: only the report
+  std::filesystem::path json;
+  int threads = 0;
+
+  void run() const;
+};
+
+}  // namespace supple

@@ -1,0 +1,26 @@
+#include <app/integrate.hpp>
+#include <physics/full_system.hpp>
+
+namespace supple {
+
+Simulation simulate_full(const Solid& solid, const Scene& scene, const SimulationOptions& options,
+                         const Progress& progress) {
+  return with_law(solid.law, [&]<template <typename> class Material>() {
+    const Stopwatch watch;
+    tell(progress, "full system", 0);
+    const FullSystem<TetElasticity<Material>> system(make_model<Material>(solid), solid.nodal_mass(),
+                                                     solid.fixed_nodes);
+    const double construction = watch.seconds();
+    Simulation result = integrate(
+        system, scene, options, [&](VectorIn u) { return system.expand(u); },
+        [&](VectorIn u, Index node) -> Point {
+          const Index f = system.numbering().free_index(node);
+          return f < 0 ? Point(Point::Zero()) : Point(u.segment<3>(3 * f));
+        },
+        progress);
+    result.setup_seconds += construction;
+    return result;
+  });
+}
+
+}  // namespace supple

@@ -1,0 +1,31 @@
+#pragma once
+/// \file The surface of a mesh, as pictures and ParaView see it.
+
+#include <io/picture.hpp>
+#include <physics/tet_mesh.hpp>
+
+#include <filesystem>
+#include <vector>
+
+namespace supple {
+
+/// The boundary alone: triangles over `nodes`, which are indices into the mesh.
+struct Surface {
+  std::vector<Triangle> triangles;
+  std::vector<Index> nodes;
+
+  explicit Surface(const TetMesh& mesh);
+  /// The rows of the surface's nodes.
+  Points rows(const Points& all) const;
+};
+
+/// An interleaved vector x₀ y₀ z₀ x₁ … over the nodes as n × 3.
+inline Eigen::Map<const Points> as_points(const Vector& u) {
+  return {u.data(), u.size() / 3, 3};
+}
+
+/// Draws and writes in one go. \see draw_picture
+void write_picture(const std::filesystem::path& path, const std::vector<PictureObject>& objects,
+                   PictureOptions options = {});
+
+}  // namespace supple

@@ -1,0 +1,36 @@
+#pragma once
+/// \file What the command says on a terminal: a progress bar, tables, one-line messages.
+
+#include <core/progress.hpp>
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace supple {
+
+/// Shows stage and share on one line of stderr; nothing where stderr is not a terminal.
+Progress progress_bar();
+/// Takes the line away, for other text or for good.
+void clear_progress();
+
+/// "supple: warning: …" on stderr.
+void warn(std::string_view message);
+
+/// Names on the left, values on the right, in columns.
+using Rows = std::vector<std::pair<std::string, std::string>>;
+void print_rows(std::FILE* out, std::string_view title, const Rows& rows);
+/// Stages in order, then their total; what took less than a hundredth of it is summed up.
+void print_stages(std::FILE* out, const std::vector<std::pair<std::string, double>>& seconds, double total);
+
+/// The shortest text that gives back the same double.
+std::string exact(double value);
+/// The shortest text of so many significant digits: "0.0123", "1.5e+06".
+std::string shown(double value, int digits = 4);
+std::string shown_percent(double share, int digits = 3);
+std::string shown_count(long long count);  ///< "95 142"
+std::string shown_bytes(double bytes);
+
+}  // namespace supple
