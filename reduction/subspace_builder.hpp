@@ -2,7 +2,10 @@
 /// \file The seam where subspaces come in.
 
 #include <physics/dynamical_system.hpp>
+#include <physics/node_numbering.hpp>
 #include <reduction/subspace.hpp>
+
+#include <span>
 
 namespace supple {
 
@@ -28,7 +31,7 @@ struct System {
   const SparseMatrix& rest_stiffness() const;
   AffineLoad<SparseMatrix> project(const Loads& loads) const;
   std::span<const Index> stencils() const;
-  const class NodeNumbering& numbering() const;
+  const NodeNumbering& numbering() const;
   struct Model {
     static constexpr int stencil_size = 4;
     const Points& rest_positions() const;
