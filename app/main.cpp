@@ -94,7 +94,7 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
       ->type_name("SHARE")
       ->group(method);
   reduce.add_option("--selector", c.selector, "How they are chosen")
-      ->check(CLI::IsMember(selector_names()))
+      ->check(CLI::IsMember(known_selectors()))
       ->group(method);
   reduce.add_option("--poses", c.poses, "Training poses [300; paper: 1000]")->type_name("T")->group(method);
   reduce

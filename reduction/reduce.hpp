@@ -19,7 +19,7 @@ struct ReduceOptions {
   PoseOptions poses;                  ///< training poses
   ForceNorm norm = ForceNorm::Stiffness;
   Matrix given_poses;  ///< d × T, instead of random ones; or 3n × T displacements, projected to the subspace
-  std::string selector = "nn-sp";  ///< see selector_names()
+  std::string selector = "nn-sp";  ///< see known_selectors()
   Index points = 150;              ///< s, largest number of components
   double target_error = 0;         ///< stop at this training error
   Index held_out_poses = 100;      ///< at each of three amplitudes; 0: measure nothing held out

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Selectors by name, as commands and files know them.
+/// \file Selectors by name for problems whose type is known at run time: all compiled once, in one place.
 
 #include <sparse/any_problem.hpp>
 #include <sparse/selection.hpp>
@@ -12,7 +12,7 @@
 namespace supple {
 
 /// Names that select_by_name understands, the default first.
-const std::vector<std::string>& selector_names();
+const std::vector<std::string>& known_selectors();
 
 /// Runs the selector of this name with its default options and this seed.
 /// \throws std::invalid_argument for a name that is not known, listing those that are.
