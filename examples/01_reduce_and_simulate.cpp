@@ -1,8 +1,8 @@
 // From a mesh to a reduced model that simulates in real time.
 //
 //   $ example_01_reduce_and_simulate
-//   63 of 2304 tets stand for all: error 0.0205 in training, 0.0066 held out
-//   after 1.00 s the tip has moved by (0.01, -0.46, 0.00) m
+//   63 of 2304 tets stand for all: error 0.0431 in training, 0.0266 held out
+//   after 1.00 s the tip has moved by (-0.14, -0.40, 0.03) m
 #include <io/builtin_meshes.hpp>
 #include <io/node_sets.hpp>
 #include <reduction/reduce.hpp>

@@ -2,7 +2,7 @@
 // Writes two_materials.png: Young's modulus at rest, the full solution, the reduced one.
 //
 //   $ example_05_two_materials
-//   reduced against full: 0.9 % of the displacement
+//   reduced against full: 0.8 % of the displacement
 #include <io/builtin_meshes.hpp>
 #include <io/node_sets.hpp>
 #include <io/picture.hpp>
