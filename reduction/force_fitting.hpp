@@ -259,8 +259,8 @@ class ForceFitting {
         metric_(std::move(metric)),
         Q_(Q),
         F_(std::move(F)) {
-    require_size("Q.rows()", Q.rows(), subspace_->dim());
-    require_size("metric", metric_->rows(), subspace_->dim());
+    require_size("metric.rows()", metric_->rows(), subspace_->dim());
+    require_size("metric.cols()", metric_->cols(), subspace_->dim());
     require(Q.cols() > 0, "there are no training poses");
     const Matrix LF = *metric_ * F_;
     scale_.resize(Q.cols());

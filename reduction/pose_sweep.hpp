@@ -86,6 +86,7 @@ void reconstruct_poses(const S& subspace, const RowMatrix& packed, Index pack, I
 template <ForceModel Model, Subspace S>
 Matrix reduced_forces(const std::shared_ptr<const Model>& model, const S& subspace, MatrixIn Q,
                       const std::function<void(double)>& tell_share = {}) {
+  require_size("Q.rows()", Q.rows(), subspace.dim());
   const RowMatrix packed = pack_poses<S::block>(Q);
   const Index num_packs = (Q.cols() + Pack::size - 1) / Pack::size, m = model->num_components();
   constexpr Index width = S::block * Pack::size;

@@ -8,6 +8,8 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
+
 namespace supple {
 
 namespace {
@@ -166,6 +168,9 @@ ReducedModel reduce(const Solid& solid, const ReduceOptions& options, ReduceRepo
   require(options.held_out_poses >= 0, "number of held-out poses is negative, expected 0 or more");
   require(options.subspace == "extended" || options.subspace == "modal",
           "subspace '" + options.subspace + "' is not known, expected extended or modal");
+  const auto& selectors = known_selectors();
+  require(std::find(selectors.begin(), selectors.end(), options.selector) != selectors.end(),
+          "selector '" + options.selector + "' is not known, see known_selectors()");
   const Stopwatch total;
   ReduceReport local, &report = report_out ? *report_out : local;
   report = {};

@@ -42,7 +42,9 @@ class ReducedSystem {
     const Index s = static_cast<Index>(indices.size());
     require_size("weights", weights.size(), s);
     require(s > 0, "no component is selected");
-    require_size("rest_stiffness", rest_stiffness_.rows(), dim());
+    require((weights.array() > 0).all(), "a weight of the selection is not positive");
+    require_size("rest_stiffness.rows()", rest_stiffness_.rows(), dim());
+    require_size("rest_stiffness.cols()", rest_stiffness_.cols(), dim());
     require_size("nodal_mass", nodal_mass.size(), model->num_nodes());
     for (const Index i : indices)
       require(i >= 0 && i < model->num_components(), "component " + std::to_string(i) +

@@ -1,0 +1,104 @@
+#pragma once
+/// \file What every SubspaceBuilder promises, as a typed test suite. A builder joins with a case and one
+/// line:
+///
+///     struct MyCase {
+///       static System make();                        // small; called once a test
+///       static Builder builder();                    // called with that system
+///     };
+///     INSTANTIATE_TYPED_TEST_SUITE_P(MyBuilder, SubspaceConformance, MyCase);
+
+#include <core/parallel.hpp>
+#include <reduction/reduced_modes.hpp>
+#include <reduction/subspace_builder.hpp>
+#include <tests/support/near.hpp>
+#include <tests/support/random_vectors.hpp>
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+namespace supple::test {
+
+template <typename Case>
+class SubspaceConformance : public testing::Test {
+ protected:
+  using System = decltype(Case::make());
+  using Builder = decltype(Case::builder());
+  static_assert(SubspaceBuilderFor<Builder, System>);
+  static constexpr int node_dim = System::node_dim;
+
+  const System system = Case::make();
+  const decltype(Case::builder()(system)) basis = Case::builder()(system);
+
+  /// Masses of all unknowns of the mesh, fixed ones too.
+  Vector mass_of_all_dofs() const {
+    Vector mass(system.num_nodes() * node_dim);
+    for (Index i = 0; i < mass.size(); ++i) mass[i] = system.nodal_mass()[i / node_dim];
+    return mass;
+  }
+};
+TYPED_TEST_SUITE_P(SubspaceConformance);
+
+TYPED_TEST_P(SubspaceConformance, ColumnsAreMassOrthonormal) {
+  const Matrix U = this->basis.dense();
+  ASSERT_EQ(U.rows(), this->system.num_nodes() * TestFixture::node_dim);
+  const Matrix gram = U.transpose() * this->mass_of_all_dofs().asDiagonal() * U;
+  EXPECT_TRUE(is_near(gram, Matrix::Identity(U.cols(), U.cols()), 1e-12));
+}
+
+TYPED_TEST_P(SubspaceConformance, FixedNodesDoNotMove) {
+  const Matrix U = this->basis.dense();
+  for (const Index v : this->system.numbering().fixed_nodes())
+    EXPECT_TRUE(U.middleRows(v * TestFixture::node_dim, TestFixture::node_dim).isZero(0)) << "node " << v;
+}
+
+TYPED_TEST_P(SubspaceConformance, GivesTheSameBitsAgainWhateverTheNumberOfThreads) {
+  for (const int threads : {1, 2}) {
+    set_num_threads(threads);
+    EXPECT_TRUE(is_same(TypeParam::builder()(this->system).W, this->basis.W)) << threads << " threads";
+  }
+  set_num_threads(0);
+}
+
+TYPED_TEST_P(SubspaceConformance, FrequenciesAscendAndOneIsTheSmallestInTheSubspace) {
+  const SubspaceReport& report = this->basis.report;
+  ASSERT_GT(report.omega.size(), report.rigid_modes);
+  ASSERT_EQ(report.residuals.size(), report.omega.size());
+  EXPECT_LE(report.residuals.maxCoeff(), 1e-6);
+  for (Index k = 1; k < report.omega.size(); ++k)
+    EXPECT_GE(report.omega[k], report.omega[k - 1] * (1 - 1e-9));
+  // the subspace contains the modes, and no subspace has lower frequencies (Rayleigh)
+  const ReducedModes modes = reduced_modes(project_stiffness(this->basis, this->system));
+  ASSERT_EQ(modes.num_zero, report.rigid_modes);
+  for (Index k = report.rigid_modes; k < report.omega.size(); ++k)
+    EXPECT_LE(modes.omega[k], report.omega[k] * (1 + 1e-6)) << "mode " << k;
+  EXPECT_NEAR(modes.omega[report.rigid_modes], report.omega[report.rigid_modes],
+              1e-6 * report.omega[report.rigid_modes]);
+}
+
+// U is given by the action of its rows, of its columns and as a matrix: three ways to say the same.
+TYPED_TEST_P(SubspaceConformance, AllViewsOfTheBasisAgree) {
+  const auto& basis = this->basis;
+  const Matrix U = basis.dense();
+  ASSERT_EQ(basis.dim(), U.cols());
+  ASSERT_EQ(basis.full_dim(), U.rows());
+  const Vector q = random_vector(basis.dim(), 1, 3), f = random_vector(basis.full_dim(), 1, 4);
+  const double rounding = 1e-13 * U.cwiseAbs().rowwise().sum().maxCoeff();
+  EXPECT_TRUE(is_near(basis.reconstruct(q), U * q, rounding));
+  EXPECT_TRUE(is_near(basis.project(f), U.transpose() * f, 1e-13 * U.cwiseAbs().colwise().sum().maxCoeff()));
+  Vector sum = Vector::Ones(basis.dim());
+  for (const Index dof : {Index{0}, Index{1}, Index{2}, U.rows() / 2, U.rows() - 1}) {
+    EXPECT_NEAR(basis.at(dof, q), U.row(dof) * q, rounding);
+    const Vector before = sum;
+    basis.add_row(dof, 2.5, sum);
+    EXPECT_TRUE(is_near(sum - before, 2.5 * U.row(dof).transpose(), 1e-14 * (1 + sum.norm())));
+  }
+  EXPECT_THROW((void)basis.reconstruct(Vector::Zero(basis.dim() + 1)), std::invalid_argument);
+  EXPECT_THROW((void)basis.project(Vector::Zero(basis.full_dim() - 1)), std::invalid_argument);
+}
+
+REGISTER_TYPED_TEST_SUITE_P(SubspaceConformance, ColumnsAreMassOrthonormal, FixedNodesDoNotMove,
+                            GivesTheSameBitsAgainWhateverTheNumberOfThreads,
+                            FrequenciesAscendAndOneIsTheSmallestInTheSubspace, AllViewsOfTheBasisAgree);
+
+}  // namespace supple::test

@@ -1,0 +1,356 @@
+#include <core/check.hpp>
+#include <core/output_file.hpp>
+#include <core/parallel.hpp>
+#include <reduction/reduce.hpp>
+#include <tests/support/bars.hpp>
+#include <tests/support/near.hpp>
+#include <tests/support/random_vectors.hpp>
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+namespace supple::test {
+namespace {
+
+Solid bar_solid(const std::string& law = "stvk", bool held = true) {
+  Solid solid;
+  solid.mesh = bar_mesh();
+  solid.law = law;
+  const std::vector<double> parameters = law_parameters(law, {.young = 1e5, .poisson = 0.35});
+  solid.parameters =
+      Eigen::Map<const Eigen::RowVectorXd>(parameters.data(), static_cast<Index>(parameters.size()));
+  if (held) solid.fixed_nodes = bar_end(solid.mesh);
+  return solid;
+}
+
+/// Seconds for the lot: few modes, few poses.
+ReduceOptions quick(Index points = 40) {
+  ReduceOptions options;
+  options.modes = 4;
+  options.poses.count = 48;
+  options.held_out_poses = 16;
+  options.points = points;
+  return options;
+}
+
+const RowMatrix& fields(const ReducedModel& model) {
+  return std::visit([](const auto& basis) -> const RowMatrix& { return basis->W; }, model.subspace);
+}
+
+/// What holds for the model and the report of any reduction.
+void expect_sound(const ReducedModel& model, const ReduceReport& report, const ReduceOptions& options) {
+  ASSERT_FALSE(model.indices.empty());
+  EXPECT_LE(static_cast<Index>(model.indices.size()), options.points);
+  EXPECT_EQ(report.points, static_cast<Index>(model.indices.size()));
+  EXPECT_EQ(model.weights.size(), report.points);
+  EXPECT_GT(model.weights.minCoeff(), 0);
+  EXPECT_THAT(model.indices, testing::Each(testing::AllOf(testing::Ge(0), testing::Lt(report.tets))));
+  EXPECT_TRUE(std::adjacent_find(model.indices.begin(), model.indices.end(), std::greater_equal<>()) ==
+              model.indices.end())
+      << "ascending, each once";
+  EXPECT_EQ(report.dimension, model.dim());
+  EXPECT_EQ(report.nodes, model.solid.mesh.num_nodes());
+  EXPECT_EQ(report.tets, model.solid.mesh.num_tets());
+  EXPECT_EQ(report.omega.size(), options.modes);
+  EXPECT_TRUE(model.rest_stiffness.rows() == model.dim() && model.rest_stiffness.allFinite());
+  EXPECT_GE(report.training_error, 0);
+  EXPECT_LT(report.training_error, 1);
+  if (options.held_out_poses > 0) {
+    ASSERT_EQ(report.held_out.size(), 3u);
+    EXPECT_EQ(report.held_out[0].first, 1);
+    EXPECT_EQ(report.held_out[0].second, report.held_out_error);
+    for (const auto& [share, error] : report.held_out) EXPECT_TRUE(error >= 0 && error < 1) << share;
+  } else {
+    EXPECT_TRUE(std::isnan(report.held_out_error) && report.held_out.empty());
+  }
+  double stages = 0;
+  for (const auto& [name, seconds] : report.seconds) stages += seconds;
+  EXPECT_LE(stages, report.total_seconds);
+  EXPECT_GT(report.peak_memory, 1e6);
+  EXPECT_FALSE(report.selection.stop_reason.empty());
+}
+
+struct Reduced {
+  explicit Reduced(const Solid& solid, const ReduceOptions& options)
+      : model(reduce(solid, options, &report)) {
+    expect_sound(model, report, options);
+  }
+  ReduceReport report;
+  ReducedModel model;
+};
+
+TEST(Reduce, FitsBetterWithMorePoints) {
+  const Solid solid = bar_solid();
+  const Reduced few(solid, quick(12)), some(solid, quick(40)), many(solid, quick(100));
+  EXPECT_EQ(some.model.dim(), 36);
+  EXPECT_LT(some.report.training_error, 0.5 * few.report.training_error);
+  EXPECT_LT(many.report.training_error, 0.5 * some.report.training_error);
+  EXPECT_LT(some.report.training_error, 0.15);
+  EXPECT_LT(some.report.held_out_error, 0.3);
+  // the fitted stiffness at rest has the softest eigenvalues of the exact one
+  ASSERT_EQ(many.report.fitted_eigenvalues.size(), 5);
+  for (Index k = 0; k < 5; ++k)
+    EXPECT_NEAR(many.report.fitted_eigenvalues[k] / many.report.exact_eigenvalues[k], 1, 0.1) << k;
+}
+
+TEST(Reduce, WithAllTetsReproducesTheForcesExactly) {
+  ReduceOptions options = quick(144);
+  options.modes = 2;
+  options.poses.count = 160;  // more equations than tets: weights of one are the only answer
+  options.poses.amplitudes = {0.1};
+  const Reduced all(bar_solid(), options);
+  EXPECT_LT(all.report.training_error, 1e-6);
+  EXPECT_LT(all.report.held_out_error, 1e-4);
+  EXPECT_LT((all.report.fitted_eigenvalues - all.report.exact_eigenvalues).norm(),
+            1e-3 * all.report.exact_eigenvalues.norm());
+}
+
+TEST(Reduce, StopsAtTheTargetError) {
+  ReduceOptions options = quick(144);
+  options.target_error = 0.2;
+  const Reduced reduced(bar_solid(), options);
+  EXPECT_LE(reduced.report.training_error, 0.2);
+  EXPECT_EQ(reduced.report.selection.status, Status::Converged) << reduced.report.selection.stop_reason;
+  options.points = 3;
+  options.target_error = 1e-4;
+  const Reduced missed(bar_solid(), options);
+  EXPECT_GT(missed.report.training_error, 1e-4);
+  EXPECT_NE(missed.report.selection.status, Status::Converged) << missed.report.selection.stop_reason;
+}
+
+TEST(Reduce, FollowsTheSeedWhateverTheNumberOfThreads) {
+  const Solid solid = bar_solid();
+  for (const std::string selector : {"nn-sp", "nn-htp"}) {
+    SCOPED_TRACE(selector);
+    ReduceOptions options = quick(25);
+    options.selector = selector;
+    set_num_threads(1);
+    const Reduced one(solid, options);
+    set_num_threads(2);
+    const Reduced two(solid, options);
+    set_num_threads(0);
+    EXPECT_EQ(one.model.indices, two.model.indices);
+    EXPECT_TRUE(is_same(one.model.weights, two.model.weights));
+    EXPECT_TRUE(is_same(fields(one.model), fields(two.model)));
+    EXPECT_TRUE(is_same(one.model.rest_stiffness, two.model.rest_stiffness));
+    EXPECT_EQ(one.report.held_out_error, two.report.held_out_error);
+    options.seed = 2;
+    const Reduced other(solid, options);
+    EXPECT_FALSE(other.model.indices == one.model.indices && other.model.weights == one.model.weights);
+  }
+}
+
+TEST(Reduce, WorksAsInThePaper) {
+  ReduceOptions options = ReduceOptions::paper();
+  EXPECT_EQ(options.poses.count, 1000);
+  EXPECT_EQ(options.poses.omega_exponent, 1);
+  options.modes = 4;
+  options.poses.count = 48;
+  options.points = 40;
+  options.held_out_poses = 16;
+  const Reduced reduced(bar_solid(), options);
+  EXPECT_LT(reduced.report.training_error, 0.3);
+}
+
+TEST(Reduce, HandlesAMaterialThatIsUndefinedForInvertedTets) {
+  ReduceOptions options = quick();
+  options.poses.amplitudes = {0.3, 0.02};
+  options.poses.omega_exponent = 1;
+  const Reduced reduced(bar_solid("mooney-rivlin"), options);
+  EXPECT_GT(reduced.report.inverted_poses, 0);
+  EXPECT_EQ(reduced.report.shrunk_poses, reduced.report.inverted_poses);
+  EXPECT_THAT(reduced.report.notes, testing::Contains(testing::HasSubstr("inverted tets")));
+  EXPECT_LT(reduced.report.training_error, 0.4);
+  // poses that somebody brings along are not touched, but refused by their number
+  options.given_poses = Matrix::Zero(36, 3);
+  options.given_poses.row(5).setLinSpaced(1, 1000);
+  EXPECT_THROW((void)reduce(bar_solid("mooney-rivlin"), options), InputError);
+}
+
+TEST(Reduce, HandlesTwoMaterials) {
+  Solid solid = bar_solid();
+  solid.parameters.conservativeResize(2, 2);
+  solid.parameters.row(1) = 100 * solid.parameters.row(0);
+  solid.density = Vector::Constant(solid.mesh.num_tets(), 1000);
+  for (Index e = 0; e < solid.mesh.num_tets(); ++e) {
+    solid.material_of_tet.push_back(e % 72 < 36);  // stiff and soft thirds
+    if (solid.material_of_tet.back()) solid.density[e] = 3000;
+  }
+  const Reduced reduced(solid, quick());
+  EXPECT_LT(reduced.report.training_error, 0.3);
+  const Reduced plain(bar_solid(), quick());
+  EXPECT_GT(reduced.report.omega[0], plain.report.omega[0]) << "the materials made no difference";
+}
+
+TEST(Reduce, HandlesFreeObjectsAndTheModesAlone) {
+  ReduceOptions options = quick();
+  options.modes = 9;
+  const Reduced free(bar_solid("stvk", false), options);
+  EXPECT_EQ(free.model.dim(), 9 * 3 + 12);
+  EXPECT_EQ(free.report.rigid_modes, 6);
+  EXPECT_LT(free.report.training_error, 0.2);
+  EXPECT_GT(free.report.exact_eigenvalues[0], 1) << "rigid motions are not listed";
+
+  options.subspace = "modal";
+  options.poses.count = 100;
+  options.held_out_poses = 0;
+  const Reduced modal(bar_solid("stvk", true), options);
+  EXPECT_EQ(modal.model.dim(), 9);
+  EXPECT_LT(modal.report.training_error, 0.2);
+}
+
+TEST(Reduce, TakesPosesAsCoordinatesOrAsDisplacements) {
+  const Solid solid = bar_solid();
+  ReduceOptions options = quick(30);
+  options.given_poses = random_matrix(36, 20, 0.1, 4);
+  const Reduced by_coordinates(solid, options);
+  EXPECT_EQ(by_coordinates.report.poses, 20);
+  const auto& basis = *std::get<std::shared_ptr<const NodalBasis>>(by_coordinates.model.subspace);
+  Matrix U(basis.full_dim(), 20);
+  for (Index t = 0; t < 20; ++t) U.col(t) = basis.reconstruct(options.given_poses.col(t));
+  options.given_poses = U;
+  const Reduced by_displacements(solid, options);
+  EXPECT_NEAR(by_displacements.report.training_error, by_coordinates.report.training_error,
+              1e-6 * by_coordinates.report.training_error);
+  EXPECT_EQ(by_displacements.model.indices, by_coordinates.model.indices);
+}
+
+TEST(Reduce, NamesImpossibleOptions) {
+  const auto message = [](auto&& change) -> std::string {
+    ReduceOptions options = quick();
+    change(options);
+    try {
+      (void)reduce(bar_solid(), options);
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "no exception";
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(message([](auto& o) { o.points = 0; }), HasSubstr("number of points is 0"));
+  EXPECT_THAT(message([](auto& o) { o.target_error = -1; }), HasSubstr("target error"));
+  EXPECT_THAT(message([](auto& o) { o.target_error = std::nan(""); }), HasSubstr("target error"));
+  EXPECT_THAT(message([](auto& o) { o.held_out_poses = -1; }), HasSubstr("held-out poses"));
+  EXPECT_THAT(message([](auto& o) { o.subspace = "wavelets"; }), HasSubstr("subspace 'wavelets'"));
+  EXPECT_THAT(message([](auto& o) { o.selector = "best"; }), HasSubstr("selector 'best'"));
+  EXPECT_THAT(message([](auto& o) { o.modes = 0; }), HasSubstr("number of modes is 0"));
+  EXPECT_THAT(message([](auto& o) { o.poses.count = 0; }), HasSubstr("number of poses is 0"));
+  EXPECT_THAT(message([](auto& o) { o.poses.amplitudes = {-1}; }), HasSubstr("amplitude"));
+  EXPECT_THAT(message([](auto& o) { o.given_poses = Matrix::Ones(7, 2); }), HasSubstr("given_poses.rows()"));
+}
+
+/// A folder of its own that goes away with the test.
+struct ModelFile : testing::Test {
+  ModelFile() { std::filesystem::create_directories(folder); }
+  ~ModelFile() override { std::filesystem::remove_all(folder); }
+
+  static std::string message(const std::filesystem::path& path) {
+    try {
+      (void)load_model(path);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no exception";
+  }
+
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() /
+      (std::string("supple_") + testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
+       std::to_string(std::hash<std::string>{}(std::filesystem::current_path().string())));
+  const std::filesystem::path path = folder / "bar.supple";
+};
+
+TEST_F(ModelFile, GivesBackTheSameBits) {
+  for (const std::string subspace : {"extended", "modal"}) {
+    SCOPED_TRACE(subspace);
+    Solid solid = bar_solid();
+    solid.parameters.conservativeResize(2, 2);
+    solid.parameters.row(1) = 3 * solid.parameters.row(0);
+    solid.material_of_tet.assign(144, 1);
+    solid.material_of_tet[7] = 0;
+    solid.mesh.region.assign(144, 4);
+    solid.mesh.region_names[4] = "trunk – β";
+    solid.damping = {0.1, 1e-3};
+    ReduceOptions options = quick(15);
+    options.subspace = subspace;
+    options.held_out_poses = 0;
+    ReducedModel model = reduce(solid, options);
+    model.provenance["seed"] = "1";
+    save_model(path, model);
+    const ReducedModel loaded = load_model(path);
+
+    EXPECT_TRUE(is_same(loaded.solid.mesh.nodes, solid.mesh.nodes));
+    EXPECT_EQ(loaded.solid.mesh.tets, solid.mesh.tets);
+    EXPECT_EQ(loaded.solid.mesh.region, solid.mesh.region);
+    EXPECT_EQ(loaded.solid.mesh.region_names, solid.mesh.region_names);
+    EXPECT_EQ(loaded.solid.law, solid.law);
+    EXPECT_TRUE(is_same(loaded.solid.parameters, solid.parameters));
+    EXPECT_EQ(loaded.solid.material_of_tet, solid.material_of_tet);
+    EXPECT_TRUE(is_same(loaded.solid.density, solid.density));
+    EXPECT_EQ(loaded.solid.fixed_nodes, solid.fixed_nodes);
+    EXPECT_EQ(loaded.solid.damping.alpha, 0.1);
+    EXPECT_EQ(loaded.solid.damping.beta, 1e-3);
+    EXPECT_EQ(loaded.subspace.index(), model.subspace.index());
+    EXPECT_TRUE(is_same(fields(loaded), fields(model)));
+    EXPECT_TRUE(is_same(loaded.omega(), model.omega()));
+    EXPECT_EQ(loaded.indices, model.indices);
+    EXPECT_TRUE(is_same(loaded.weights, model.weights));
+    EXPECT_TRUE(is_same(loaded.rest_stiffness, model.rest_stiffness));
+    EXPECT_EQ(loaded.provenance, model.provenance);
+
+    const auto force = [](const ReducedModel& of) {
+      return with_reduced_system(
+          of, [](const auto& system) { return system.force(random_vector(system.dim(), 0.1, 1)); });
+    };
+    EXPECT_TRUE(is_same(force(loaded), force(model)));
+    const std::string bytes = read_file(path);
+    save_model(path, loaded);
+    EXPECT_EQ(read_file(path), bytes);
+  }
+}
+
+TEST_F(ModelFile, IsRefusedIfAnythingIsWrongWithIt) {
+  ReduceOptions options = quick(10);
+  options.modes = 1;
+  options.held_out_poses = 0;
+  ReducedModel model = reduce(bar_solid(), options);
+  save_model(path, model);
+  const std::string bytes = read_file(path);
+  ASSERT_EQ(message(path), "no exception");
+
+  EXPECT_THAT(message(folder / "absent"), testing::HasSubstr("absent"));
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{7}, std::size_t{100}, bytes.size() / 2, bytes.size() - 1}) {
+    write_file(path, std::string_view(bytes).substr(0, size));
+    EXPECT_THAT(message(path), testing::HasSubstr("bar.supple")) << size << " bytes";
+  }
+  write_file(path, "solid bar\n  facet normal 0 0 1\n this is another kind of file altogether\n");
+  EXPECT_THAT(message(path), testing::HasSubstr("bar.supple"));
+  std::string flipped = bytes;
+  flipped[bytes.size() - 100] ^= 1;
+  write_file(path, flipped);
+  EXPECT_THAT(message(path), testing::HasSubstr("bar.supple"));
+
+  // inconsistent contents under valid checksums
+  const auto changed = [&](auto&& change) {
+    ReducedModel other = model;
+    change(other);
+    save_model(path, other);
+    return message(path);
+  };
+  EXPECT_THAT(changed([](auto& m) { m.indices.back() = 144; }), testing::HasSubstr("names tet 144"));
+  EXPECT_THAT(changed([](auto& m) { m.indices.pop_back(); }), testing::HasSubstr("selection.weights"));
+  EXPECT_THAT(changed([](auto& m) { m.weights[0] = -1; }), testing::HasSubstr("not all positive"));
+  EXPECT_THAT(changed([](auto& m) { m.weights[0] = std::nan(""); }), testing::HasSubstr("not all positive"));
+  EXPECT_THAT(changed([](auto& m) { m.solid.mesh.tets[3][1] = -2; }), testing::HasSubstr("names node -2"));
+  EXPECT_THAT(changed([](auto& m) { m.solid.fixed_nodes = {63}; }), testing::HasSubstr("names node 63"));
+  EXPECT_THAT(changed([](auto& m) { m.solid.law = "jelly"; }), testing::HasSubstr("jelly"));
+  EXPECT_THAT(changed([](auto& m) { m.solid.density = Vector::Ones(5); }), testing::HasSubstr("bar.supple"));
+  EXPECT_THAT(changed([](auto& m) { m.rest_stiffness.setZero(8, 9); }), testing::HasSubstr("rest_stiffness"));
+  EXPECT_THAT(changed([](auto& m) { std::swap(m.solid.mesh.tets[0][0], m.solid.mesh.tets[0][1]); }),
+              testing::HasSubstr("volume"));
+}
+
+}  // namespace
+}  // namespace supple::test

@@ -1,0 +1,41 @@
+#pragma once
+/// \file Bars of irregular tets that the tests of the reduction floor share.
+
+#include <physics/full_system.hpp>
+#include <physics/mass.hpp>
+#include <physics/tet_elasticity.hpp>
+#include <tests/support/meshes.hpp>
+
+namespace supple::test {
+
+/// 6 × 2 × 2 cubes of 0.1 m, their nodes moved a little so that nothing is symmetric.
+inline TetMesh bar_mesh() {
+  return perturbed(kuhn_box(6, 2, 2, 0.1), 0.01, 7);
+}
+/// The nodes of its end at x = 0.
+inline std::vector<Index> bar_end(const TetMesh& mesh) {
+  return nodes_where(mesh, [](const Point& x) { return x[0] < 0.05; });
+}
+
+using StvkBar = FullSystem<TetElasticity<StVenantKirchhoff>>;
+inline StvkBar stvk_bar(const std::vector<Index>& fixed_nodes) {
+  const TetMesh mesh = bar_mesh();
+  return {TetElasticity<StVenantKirchhoff>(mesh,
+                                           StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
+          lumped_mass(mesh, 1000.0), fixed_nodes};
+}
+inline StvkBar clamped_bar() {
+  return stvk_bar(bar_end(bar_mesh()));
+}
+inline StvkBar free_bar() {
+  return stvk_bar({});
+}
+
+/// All components, each with weight one.
+inline std::vector<Index> all_components(Index count) {
+  std::vector<Index> all(count);
+  for (Index i = 0; i < count; ++i) all[i] = i;
+  return all;
+}
+
+}  // namespace supple::test
