@@ -8,7 +8,6 @@
 #include <new>
 #include <numeric>
 #include <string>
-#include <sys/mman.h>
 #include <utility>
 
 extern "C" {
@@ -41,20 +40,6 @@ void solve_right(int rows, int cols, const double* L, int ldl, double* B, int ld
 /// Lower triangle of C = beta C − A Aᵀ.
 void subtract_square(int n, int k, const double* A, int lda, double beta, double* C, int ldc) {
   if (n > 0) dsyrk_("L", "N", &n, &k, &minus_one, A, &lda, &beta, C, &ldc);
-}
-
-/// Uninitialised memory, to be released by std::free. Every solve streams the whole factor: huge pages spare
-/// it most misses of the address cache, and the first factorisation most page faults.
-double* allocate(std::size_t count) {
-  constexpr std::size_t huge_page = std::size_t{1} << 21;
-  const std::size_t unit = count * sizeof(double) < huge_page ? 64 : huge_page;
-  const std::size_t bytes = (count * sizeof(double) + unit - 1) / unit * unit;
-  void* const memory = std::aligned_alloc(unit, bytes);
-  if (!memory) throw std::bad_alloc();
-#ifdef MADV_HUGEPAGE
-  if (unit == huge_page) madvise(memory, bytes, MADV_HUGEPAGE);  // a hint: without it all works, too
-#endif
-  return static_cast<double*>(memory);
 }
 
 bool factor_diagonal(int n, double* A, int lda) {
@@ -245,7 +230,7 @@ bool SupernodalFactor::eliminate(int s, const double* A_values, std::vector<Fron
 }
 
 bool SupernodalFactor::factorize(const SparseMatrix& A) try {
-  if (!values_) values_.reset(allocate(num_values()));
+  if (!values_) values_.reset(new double[num_values()]);
   std::vector<Front> updates(pattern_.num_supernodes());
   std::atomic<bool> positive{true};
   parallel_for(static_cast<Index>(for_factor_.subtrees.size()), [&](Index k) {

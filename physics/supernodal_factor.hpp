@@ -4,7 +4,6 @@
 #include <core/types.hpp>
 
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -75,10 +74,7 @@ class SupernodalFactor {
   std::vector<int>
       target_;  // of every row below: a row of X, or −1 − its place below the root of its subtree
   double flops_ = 0;
-  struct Free {
-    void operator()(double* memory) const { std::free(memory); }
-  };
-  std::unique_ptr<double[], Free> values_;
+  std::unique_ptr<double[]> values_;
 };
 
 }  // namespace supple
