@@ -13,7 +13,7 @@ namespace supple {
 
 /// Eight doubles, operated on lane by lane with the vector instructions at hand. Its size and alignment (64
 /// bytes) do not depend on compiler flags.
-struct Pack {
+struct alignas(64) Pack {
   static constexpr int size = 8;
   using Lanes = double __attribute__((vector_size(size * sizeof(double))));
 
