@@ -154,7 +154,7 @@ ReduceOptions ReduceOptions::paper() {
   ReduceOptions options;
   options.poses.count = 1000;
   options.poses.omega_exponent = 1;
-  options.poses.amplitudes = {0.065};
+  options.poses.amplitudes = {0.07};
   options.norm = ForceNorm::Mass;
   options.selector = "nn-htp";
   return options;

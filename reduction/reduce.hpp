@@ -26,7 +26,7 @@ struct ReduceOptions {
   std::uint64_t seed = 1;
 
   /// The paper's: 1000 poses with deviations ∝ 1/ω̄, errors in the M-orthonormal basis, NN-HTP. The amplitude,
-  /// which the paper leaves open, is the one at which its error for the dragon comes out (6.5 % of the
+  /// which the paper leaves open, is the one at which its error for the dragon comes out (7 % of the
   /// diagonal).
   static ReduceOptions paper();
 };
