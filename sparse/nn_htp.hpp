@@ -22,13 +22,13 @@ struct NnHtp {
   /// Stop at this relative error, if the request has no larger one. The paper: 0.03.
   double tolerance = 0;
   /// The paper: 10, but 18 for its dragon. The error is not monotone, each iteration may bring the best one.
-  Index max_iterations = 20;
+  Index max_iterations = 40;
   /// c/s. More is slower and, Sec. 4.1, not always better; infinity: all columns, which costs least for a
   /// FullGradientProblem.
   double candidates_per_size = 5;
   StepLength step = StepLength::Paper;
   /// Stop after so many draws in a row that change nothing.
-  Index patience = 3;
+  Index patience = 10;
   std::uint64_t seed = 0;
 
   template <FittingProblem P>
