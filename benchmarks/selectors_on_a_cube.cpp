@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
     for (std::string_view name : selector_names)
       if (name != "all")
         report(std::string(name), s,
-               [&](std::uint64_t seed) { return select_by_name(name, seed, training, s); });
+               [&](std::uint64_t seed) { return select_by_name(name, training, s, seed); });
     report("nn-sp add 1", s,
            [&](std::uint64_t seed) { return NnSp{.added_per_size = 1, .seed = seed}(training, s); });
     report("greedy T_s 10", s, [&](std::uint64_t seed) {

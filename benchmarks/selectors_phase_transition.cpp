@@ -43,7 +43,7 @@ bool recovers(std::string_view name, const Signal& signal, Index s, std::uint64_
           ? NnSp{.max_iterations = 200, .candidates_per_size = all, .seed = seed}(signal.problem, request)
       : name == "nn-htp"
           ? NnHtp{.max_iterations = 200, .candidates_per_size = all, .seed = seed}(signal.problem, request)
-          : select_by_name(name, seed, signal.problem, request);
+          : select_by_name(name, signal.problem, request, seed);
   Vector w = Vector::Zero(signal.w.size());
   w(c.indices) = c.weights;
   return (w - signal.w).norm() <= 1e-4 * signal.w.norm();

@@ -101,12 +101,15 @@ class AnyProblem {
     Index cols() const override { return problem->cols(); }
     const Vector& rhs() const override { return problem->rhs(); }
     void column(Index j, VectorOut out) const override { problem->column(j, out); }
-    AnyColumns columns(std::span<const Index> js) const override { return AnyColumns(problem->columns(js)); }
+    AnyColumns columns(std::span<const Index> js) const override {
+      return AnyColumns(columns_of(*problem, js));
+    }
     Vector transpose_times(VectorIn r) const override { return problem->transpose_times(r); }
     Vector squared_norms() const override { return problem->squared_norms(); }
     Index num_groups() const override { return problem->num_groups(); }
     std::shared_ptr<const Interface> restricted_to(std::span<const Index> groups) const override {
-      return std::make_shared<Model>(problem->restricted_to(groups));
+      auto restricted = problem->restricted_to(groups);
+      return std::make_shared<Model<decltype(restricted)>>(std::move(restricted));
     }
     std::unique_ptr<P> owned;
     const P* problem;

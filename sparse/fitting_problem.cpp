@@ -159,10 +159,42 @@ Vector DenseProblem::squared_norms() const {
 }
 
 DenseRows DenseProblem::restricted_to(std::span<const Index> groups) const {
-  std::vector<Index> kept;
+  return {A_, b_, groups, group_size_};
+}
+
+DenseRows::DenseRows(const Matrix& A, VectorIn b, std::span<const Index> groups, Index group_size)
+    : A_(&A), group_size_(group_size) {
   for (Index group : groups)
-    for (Index i = 0; i < group_size_; ++i) kept.push_back(group * group_size_ + i);
-  return {A_, b_, std::move(kept)};
+    for (Index i = 0; i < group_size_; ++i) rows_.push_back(group * group_size_ + i);
+  b_ = b(rows_);
+}
+
+Vector DenseRows::transpose_times(VectorIn r) const {
+  Vector result(cols());
+  parallel_ranges(cols(), tile, [&](Index begin, Index end) {
+    for (Index j = begin; j < end; ++j) result[j] = A_->col(j)(rows_).dot(r);
+  });
+  return result;
+}
+
+Vector DenseRows::squared_norms() const {
+  Vector result(cols());
+  parallel_ranges(cols(), tile, [&](Index begin, Index end) {
+    for (Index j = begin; j < end; ++j) result[j] = A_->col(j)(rows_).squaredNorm();
+  });
+  return result;
+}
+
+DenseRows DenseRows::restricted_to(std::span<const Index> groups) const {
+  DenseRows part = *this;
+  part.rows_.clear();
+  part.b_.resize(static_cast<Index>(groups.size()) * group_size_);
+  for (Index group : groups)
+    for (Index i = group * group_size_; i < (group + 1) * group_size_; ++i) {
+      part.b_[static_cast<Index>(part.rows_.size())] = b_[i];
+      part.rows_.push_back(rows_[i]);
+    }
+  return part;
 }
 
 }  // namespace supple

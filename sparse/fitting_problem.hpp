@@ -108,24 +108,29 @@ class GatheredColumns {
 };
 static_assert(ColumnBlock<GatheredColumns>);
 
-/// Some rows of a matrix in memory.
+/// Some groups of the rows of a matrix in memory, gathered when columns are asked for.
 class DenseRows {
  public:
   /// A must outlive it.
-  DenseRows(const Matrix& A, VectorIn b, std::vector<Index> rows)
-      : A_(&A), rows_(std::move(rows)), b_(b(rows_)) {}
+  /// \param groups  of group_size consecutive rows each, in this order.
+  DenseRows(const Matrix& A, VectorIn b, std::span<const Index> groups, Index group_size);
 
   Index rows() const { return b_.size(); }
   Index cols() const { return A_->cols(); }
   const Vector& rhs() const { return b_; }
   void column(Index j, VectorOut out) const { out = A_->col(j)(rows_); }
+  Vector transpose_times(VectorIn r) const;
+  Vector squared_norms() const;
+  Index num_groups() const { return rows() / group_size_; }
+  DenseRows restricted_to(std::span<const Index> groups) const;
 
  private:
   const Matrix* A_;
   std::vector<Index> rows_;
   Vector b_;
+  Index group_size_;
 };
-static_assert(FittingProblem<DenseRows>);
+static_assert(FullGradientProblem<DenseRows> && GroupedFittingProblem<DenseRows>);
 
 /// A and b in memory. Rows may be grouped: group_size consecutive rows stand or fall together.
 class DenseProblem {

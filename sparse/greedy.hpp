@@ -35,8 +35,8 @@ Selection grow(const Growth& growth, const P& problem, const SelectionRequest& r
   run.drop_unused(S, w);
 
   Index iterations = 0, unchanged = 0;
-  std::vector<Index>
-      barred;  // joined without effect since the last progress: to rounding they depend on the others
+  // Joined without effect since the last progress: to rounding these depend on the others.
+  std::vector<Index> barred;
   const auto finish = [&](Status status, const char* reason) {
     if (S.size() > s) {
       w = S.fit_on(prune(S.gram(), w, s, run.must_keep(S)));

@@ -7,17 +7,17 @@
 
 namespace supple {
 
-/// Adds one column at a time: of a few random candidates the one whose direction fits the residual best, and
-/// refits by NNLS. With subset training, candidates are compared and weights fitted on a few random groups of
-/// rows (training poses) only, anew in each step; all rows are fitted now and then, for the history and the
-/// target error, and at the end. \note s NNLS problems; O(|C| rows) for entries of A a step, or |C| + size
-/// times the rows of T_s groups. \see An, Kim & James 2008, Optimizing cubature for efficient integration of
-/// subspace deformations.
+/// Adds one column at a time: of a few random candidates the one whose direction fits the residual best,
+/// and refits by NNLS. With subset training, candidates are compared and weights fitted on a few random
+/// groups of rows (training poses) only, anew in each step; all rows are fitted now and then, for the
+/// history and the target error, and at the end.
+/// \note s NNLS problems; O(|C| rows) for entries of A a step, or |C| + size times the rows of T_s groups.
+/// \see An, Kim & James 2008, Optimizing cubature for efficient integration of subspace deformations.
 struct GreedyCubature {
   double tolerance = 0;    ///< stop at this relative error, if the request has no larger one
   Index candidates = 100;  ///< |C|, drawn anew in each step; An et al.: 100 to 1000
-  Index subset_groups =
-      0;  ///< T_s: groups of rows to train on, where the problem has groups; An et al.: 10; 0: all
+  /// T_s: groups of rows to train on, where the problem has groups; An et al.: 10; 0: all
+  Index subset_groups = 0;
   std::uint64_t seed = 0;
 
   template <FittingProblem P>
@@ -100,8 +100,8 @@ struct GreedyCubature {
 /// \see Kim & Delaney 2013, Subspace fluid re-simulation.
 struct BatchedGreedy {
   double tolerance = 0;  ///< stop at this relative error, if the request has no larger one
-  double added_per_size =
-      0.1;  ///< share of s that joins in each step; fewer: smaller error, more NNLS problems
+  /// share of s that joins in each step; fewer: smaller error, more NNLS problems
+  double added_per_size = 0.1;
   double candidates_per_added = 10;  ///< drawn anew in each step; few: less alike, many: better directions
   std::uint64_t seed = 0;
 

@@ -22,8 +22,8 @@ enum class NihtStep {
 struct Niht {
   double tolerance = 0;        ///< stop at this relative error, if the request has no larger one
   Index max_iterations = 300;  ///< convergence is linear: more for ill-conditioned columns
-  double candidates_per_size =
-      std::numeric_limits<double>::infinity();  ///< c/s, drawn anew in each iteration
+  /// c/s, drawn anew in each iteration
+  double candidates_per_size = std::numeric_limits<double>::infinity();
   NihtStep step = NihtStep::Normalized;
   std::uint64_t seed = 0;
 

@@ -14,9 +14,9 @@ enum class QuasiNewtonMethod {
 };
 
 /// min ½ ‖A w − b‖² over w ≥ 0 by a general-purpose bounded minimiser from NLopt. Slow on ill-conditioned
-/// columns, and its answer is approximate: zeros are exact only where a bound is active, gᵢ is small but not
-/// zero. For comparison; use Nnls for an answer. \see von Tycowicz et al. 2013, Sec. 4.1: "too stiff for
-/// projection-based solvers".
+/// columns, and its answer is approximate: zeros are exact only where a bound is active, gᵢ is small but
+/// not zero. For comparison; use Nnls for an answer.
+/// \see von Tycowicz et al. 2013, Sec. 4.1: "too stiff for projection-based solvers".
 struct QuasiNewtonNnls {
   QuasiNewtonMethod method = QuasiNewtonMethod::Lbfgs;
   double tolerance = 1e-12;      ///< stop when a step changes the objective by less than this share

@@ -7,8 +7,9 @@
 namespace supple {
 
 /// Non-negative orthogonal matching pursuit: adds the column of the best direction among all, and refits by
-/// NNLS. \note one Aᵀ r over all columns a step, without evaluating them for a FullGradientProblem. \see
-/// Bruckstein, Elad & Zibulevsky 2008; Yaghoobi, Wu & Davies 2015.
+/// NNLS.
+/// \note one Aᵀ r over all columns a step, without evaluating them for a FullGradientProblem.
+/// \see Bruckstein, Elad & Zibulevsky 2008; Yaghoobi, Wu & Davies 2015.
 struct NnOmp {
   double tolerance = 0;  ///< stop at this relative error, if the request has no larger one
   /// Share of s to grow to before pruning back to s by backward elimination: 1.3 lowers the error a little
@@ -35,10 +36,12 @@ struct NnOmp {
 
 /// Energy-conserving sampling and weighting: the active-set method of Lawson and Hanson on all columns,
 /// stopped early, when the error has its target. The largest entry of Aᵀ r enters, so that large components
-/// come first. \note as NnOmp.   \see Farhat et al. 2014; Chapman et al. 2017; Lawson & Hanson 1974.
+/// come first.
+/// \note as NnOmp.
+/// \see Farhat et al. 2014; Chapman et al. 2017; Lawson & Hanson 1974.
 struct Ecsw {
-  double tolerance =
-      0;  ///< stop at this relative error, if the request has no larger one; in the literature 0.01
+  /// stop at this relative error, if the request has no larger one; in the literature 0.01
+  double tolerance = 0;
   std::uint64_t seed = 0;  ///< nothing here is random
 
   template <FittingProblem P>

@@ -31,23 +31,28 @@ struct NnlsSolution {
 
 /// Active-set method on the normal equations: block exchanges while they make progress (usually a handful),
 /// then one column at a time, with the Cholesky factor of the passive set updated. A column that depends
-/// linearly on the passive ones stays out, which costs nothing: its gradient is zero. So copies of a column,
-/// zero columns and singular Gram matrices are nothing special. Columns are normalised inside, so their
-/// scales do not matter. Accuracy: KKT to about ε cond(A_P)², ε = 2e-16; see Nnls for matrices worse than
-/// that. \see Bro & De Jong 1997 (normal equations); Kim & Park 2011 (block exchanges); Lawson & Hanson 1974,
-/// Ch. 23.
+/// linearly on the passive ones stays out, which costs nothing: its gradient is zero. So copies of a
+/// column, zero columns and singular Gram matrices are nothing special. Columns are normalised inside, so
+/// their scales do not matter. Accuracy: KKT to about ε cond(A_P)², ε = 2e-16; see Nnls for matrices worse
+/// than that.
+/// \see Bro & De Jong 1997 (normal equations); Kim & Park 2011 (block exchanges); Lawson & Hanson 1974, Ch.
+/// 23.
 struct Fnnls {
   double tolerance = 1e-12;  ///< of the KKT residual
   Index max_iterations = 0;  ///< exchanges; 0: 3 n + 30, which only a very degenerate problem needs
 
-  /// \param gram     G = AᵀA (n × n).   \param atb  Aᵀb (n).
+  /// \param gram     G = AᵀA (n × n).
+  /// \param atb  Aᵀb (n).
   /// \param passive  columns to start from, such as the answer to a similar problem; may be empty.
-  /// \throws std::invalid_argument if sizes do not fit. \note O(n²) an exchange, and O(|passive|³) once.
+  /// \throws std::invalid_argument if sizes do not fit.
+  /// \note O(n²) an exchange, and O(|passive|³) once.
   NnlsSolution operator()(MatrixIn gram, VectorIn atb, std::span<const Index> passive = {}) const;
 };
 
-/// Least squares without the sign: columns that to rounding depend on earlier ones get no weight.
-/// Residual as above, for gᵢ = 0. \note O(n³/3). \throws std::invalid_argument if sizes do not fit.
+/// Least squares without the sign: columns that to rounding depend on earlier ones get no weight. Residual
+/// as above, for gᵢ = 0.
+/// \note O(n³/3).
+/// \throws std::invalid_argument if sizes do not fit.
 NnlsSolution least_squares(MatrixIn gram, VectorIn atb);
 
 /// How Nnls solves.
@@ -68,11 +73,12 @@ struct NnlsFit {
   Report report;
 };
 
-/// min ‖A w − b‖ subject to w ≥ 0, for a matrix in memory.
-/// Copies of columns, zero columns, any scale of columns, rank deficiency and n > rows are all answered; of
-/// several solutions, one with linearly independent columns. \note NormalEquations: rows n² / 2
-/// multiplications for AᵀA, then O(n²) an exchange; Qr: rows n² first, if rows > n. \see Bro & De Jong 1997;
-/// Lawson & Hanson 1974; Daniel, Gragg, Kaufman & Stewart 1976 (updating QR).
+/// min ‖A w − b‖ subject to w ≥ 0, for a matrix in memory. Copies of columns, zero columns, any scale of
+/// columns, rank deficiency and n > rows are all answered; of several solutions, one with linearly
+/// independent columns.
+/// \note NormalEquations: rows n² / 2 multiplications for AᵀA, then O(n²) an exchange; Qr: rows n² first,
+/// if rows > n.
+/// \see Bro & De Jong 1997; Lawson & Hanson 1974; Daniel, Gragg, Kaufman & Stewart 1976 (updating QR).
 struct Nnls {
   NnlsMethod method = NnlsMethod::Automatic;
   double tolerance = 1e-12;  ///< of the KKT residual

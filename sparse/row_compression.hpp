@@ -17,7 +17,8 @@ struct CompressedRows {
 };
 
 /// CountSketch: every row is added, with a random sign, to a random one of `rows` rows, which keeps inner
-/// products in the mean. \see Clarkson & Woodruff 2013.
+/// products in the mean.
+/// \see Clarkson & Woodruff 2013.
 class CountSketch {
  public:
   /// \throws std::invalid_argument if rows < 1.
@@ -64,10 +65,11 @@ CompressedRows sketch_rows(const CountSketch& sketch, const P& problem, const st
   return result;
 }
 
-/// The dominant left singular vectors of A, each scaled by the inverse of its singular value: S = Σ⁻¹ Uᵀ, so
-/// that the rows of S A are orthonormal. By a randomised range finder, in two passes over the columns. At
-/// most `rows` rows, fewer if A has less rank. \note rows · |columns| numbers.   \see Halko, Martinsson &
-/// Tropp 2011.
+/// The dominant left singular vectors of A, each scaled by the inverse of its singular value: S = Σ⁻¹ Uᵀ,
+/// so that the rows of S A are orthonormal. By a randomised range finder, in two passes over the columns.
+/// At most `rows` rows, fewer if A has less rank.
+/// \note rows · |columns| numbers.
+/// \see Halko, Martinsson & Tropp 2011.
 template <FittingProblem P>
 CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem,
                              const std::vector<Index>& columns);
@@ -76,7 +78,7 @@ CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem,
 /// rows. The history is that of the compressed problem; everything else in the report is exact.
 template <typename S, FittingProblem P>
 Selection select_on_rows(const CompressedRows& compressed, const S& select, const P& problem,
-                         const SelectionRequest& request);
+                         const SelectionRequest& request, const Stopwatch& since);
 
 /// Chooses with `select` on a CountSketch of the rows, and fits the weights to all rows.
 /// \note every candidate column is evaluated once (for a target error without a size: in each run of the
@@ -92,16 +94,19 @@ struct Sketched {
   Selection operator()(const P& problem, const SelectionRequest& request) const {
     require(rows >= 0, "rows is " + std::to_string(rows) + ", expected 0 (automatic) or more");
     if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
+    const Stopwatch stopwatch;
     const SelectionRules rules(request, problem.cols(), problem.rhs());
     const Index wanted = rows > 0 ? rows : std::max<Index>(256, 8 * rules.size());
     const CountSketch sketch(problem.rows(), std::min(wanted, problem.rows()), seed);
-    return select_on_rows(sketch_rows(sketch, problem, rules.eligible()), select, problem, request);
+    return select_on_rows(sketch_rows(sketch, problem, rules.eligible()), select, problem, request,
+                          stopwatch);
   }
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// Orthonormal columns that span those of Y. \note O(rows cols²).
+/// Orthonormal columns that span those of Y.
+/// \note O(rows cols²).
 Matrix orthonormalized(const Matrix& Y);
 /// Σ⁻¹ Uᵀ of J = U Σ Vᵀ, for the at most `rows` singular values above 1e-10 of the largest.
 Matrix whitening(const Matrix& J, Index rows);
@@ -134,7 +139,8 @@ CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem,
 
 template <typename S, FittingProblem P>
 Selection select_on_rows(const CompressedRows& compressed, const S& select, const P& problem,
-                         const SelectionRequest& request) {
+                         const SelectionRequest& request, const Stopwatch& since) {
+  const double compressing = since.seconds();
   SelectionRun<P> run(problem, request);
   run.account(static_cast<Index>(compressed.columns.size()));
   std::vector<Index> position(problem.cols(), -1);
@@ -191,6 +197,8 @@ Selection select_on_rows(const CompressedRows& compressed, const S& select, cons
   std::stable_sort(
       history.begin(), history.end(),
       [](const SelectionStep& first, const SelectionStep& second) { return first.seconds < second.seconds; });
+  for (SelectionStep& step : history) step.seconds += compressing;
+  selection.report.seconds += compressing;
   return selection;
 }
 

@@ -74,9 +74,8 @@ struct Scan {
   /// g_j = a_jᵀ r, and 0 where that is rounding: after an exact fit nothing else is left, and it must not
   /// choose.
   Vector correlations;
-  Vector norms;  ///< ‖a_j‖
-  std::optional<ColumnsOf<P>>
-      block;  ///< the columns themselves, if they were evaluated and not too many to keep
+  Vector norms;                       ///< ‖a_j‖
+  std::optional<ColumnsOf<P>> block;  ///< the columns themselves, if evaluated and not too many to keep
 
   Index size() const { return correlations.size(); }
   Vector cosines() const {  ///< g_j / ‖a_j‖

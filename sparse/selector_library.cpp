@@ -1,5 +1,4 @@
 #include <sparse/selector_library.hpp>
-
 #include <sparse/selectors.hpp>
 
 namespace supple {

@@ -5,8 +5,8 @@
 
 namespace supple {
 
-/// The smallest selection, to 5 % of its size, by which `select` reaches the request's target error: sizes
-/// are doubled until one does, then bisected; each run starts from the largest selection that failed.
+/// The smallest selection, to 5 % of its size and within the request's, by which `select` reaches the request's
+/// target error: sizes are doubled until one does, then bisected; each run starts from the largest selection that failed.
 /// Seconds, iterations and columns evaluated are those of all runs together, the history that of the answer.
 /// \note about 2 log₂(size) runs of `select`. If no size reaches the target, the largest is returned, with
 /// the reason.
@@ -14,7 +14,7 @@ template <typename S, FittingProblem P>
 Selection smallest_selection(const S& select, const P& problem, SelectionRequest request) {
   const Stopwatch stopwatch;
   const SelectionRules rules(request, problem.cols(), problem.rhs());
-  const auto largest = static_cast<Index>(rules.eligible().size());
+  const Index largest = rules.size();
   Index iterations = 0, columns_evaluated = 0;
   const auto select_at = [&](Index size) {
     request.size = size;

@@ -5,8 +5,9 @@
 
 namespace supple {
 
-/// RᵀR = G for a symmetric positive definite G with unit diagonal that grows at its end and loses any of its
-/// rows and columns. \see Golub & Van Loan, Matrix Computations, Sec. 6.5.
+/// RᵀR = G for a symmetric positive definite G with unit diagonal that grows at its end and loses any of
+/// its rows and columns.
+/// \see Golub & Van Loan, Matrix Computations, Sec. 6.5.
 class UpdatableCholesky {
  public:
   /// \param max_size  room for so many rows and columns.

@@ -40,7 +40,8 @@ class WorkingSet {
   const Vector& atb() const { return atb_; }
   std::vector<Index> indices() const { return indices_at(block_, all_positions(size())); }
 
-  /// Adds columns that are not yet present. \note O(rows · |more| · size).
+  /// Adds columns that are not yet present.
+  /// \note O(rows · |more| · size).
   void append(const Block& more) {
     const Index old_size = size(), added = more.size();
     if (added == 0) return;
@@ -93,6 +94,7 @@ class WorkingSet {
     }
   }
 
+ private:
   const P* problem_;
   Block block_;
   Matrix gram_;

@@ -94,6 +94,11 @@ TEST(DenseProblem, RestrictsToGroupsOfRows) {
   Matrix expected(40, A.cols());
   expected << A.bottomRows(20), A.topRows(20);
   expect_columns(columns_of(part, some), expected, some);
+  EXPECT_TRUE(part.transpose_times(part.rhs()).isApprox(expected.transpose() * part.rhs(), 1e-13));
+  EXPECT_TRUE(part.squared_norms().isApprox(expected.colwise().squaredNorm().transpose(), 1e-13));
+  const DenseRows first = part.restricted_to(std::vector<Index>{1});  // which is group 0 of the whole
+  expect_columns(columns_of(first, some), A.topRows(20), some);
+  EXPECT_EQ(first.rhs(), dense.rhs().head(20));
   EXPECT_EQ(part.rhs().head(20), dense.rhs().tail(20));
   EXPECT_EQ(part.rhs().tail(20), dense.rhs().head(20));
 }

@@ -1,3 +1,4 @@
+#include <sparse/selector_library.hpp>
 #include <tests/conformance/subset_selector_conformance.hpp>
 
 #include <gtest/gtest.h>
@@ -165,9 +166,21 @@ TEST(SelectByName, KnowsEveryName) {
   const DenseProblem problem(gaussian(20, 15, 1), gaussian(20, 1, 2));
   for (std::string_view name : selector_names) {
     const Index s = name == "all" ? 15 : 4;
-    EXPECT_LE(select_by_name(name, 1, problem, s).size(), s) << name;
+    EXPECT_LE(select_by_name(name, problem, s, 1).size(), s) << name;
   }
-  EXPECT_THROW(select_by_name("nn_sp", 1, problem, 4), std::invalid_argument);
+  EXPECT_THROW(select_by_name("nn_sp", problem, 4, 1), std::invalid_argument);
+}
+
+TEST(SelectByName, DoesTheSameOnATypeErasedProblem) {
+  for (std::string_view name : selector_names) {
+    if (name == "all") continue;
+    const Selection expected = select_by_name(name, cube(), 10, 1),
+                    c = select_by_name(name, AnyProblem(cube()), 10, 1);
+    EXPECT_EQ(c.indices, expected.indices) << name;
+    EXPECT_EQ(c.weights, expected.weights) << name;
+  }
+  const GreedyCubature greedy{.subset_groups = 5};
+  EXPECT_EQ(greedy(AnyProblem(cube()), 10).indices, greedy(cube(), 10).indices);
 }
 
 // Only what the concept asks for: no blocks, no full gradient, no groups.
@@ -175,7 +188,7 @@ TEST(SelectByName, NeedsNoMoreThanColumnsOnDemand) {
   const testing::ColumnsOnly problem(cube().matrix(), cube().rhs());
   for (std::string_view name : selector_names) {
     if (name == "all") continue;
-    const Selection expected = select_by_name(name, 1, cube(), 10), c = select_by_name(name, 1, problem, 10);
+    const Selection expected = select_by_name(name, cube(), 10, 1), c = select_by_name(name, problem, 10, 1);
     EXPECT_EQ(c.indices, expected.indices) << name;
     EXPECT_NEAR(c.report.residual, expected.report.residual, 1e-9 * problem.rhs().norm()) << name;
   }
