@@ -115,6 +115,7 @@ void draw_comparison(const std::filesystem::path& path, const TetMesh& mesh,
   options.height = 800;
   options.scale.label = "distance [m]";
   options.scale.low = 0.0;
+  options.scale.high = scale_end(objects);
   write_picture(path, objects, options);
 }
 
@@ -196,8 +197,8 @@ void CompareCommand::run() const {
   if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) {
     const auto errors = [](const Series& series) {
-      return shown_percent(series.relative()) + " in the mean, " + shown_percent(series.largest()) +
-             " at worst";
+      return shown_percent(series.relative()) + "; worst frame " + shown_percent(series.largest()) +
+             " of the largest";
     };
     Rows rows{{"frames",
                std::to_string(frames.size()) + " until " + shown(result.time[result.time.size() - 1]) + " s"},

@@ -6,12 +6,14 @@
 #include <app/terminal.hpp>
 #include <core/check.hpp>
 #include <io/builtin_meshes.hpp>
+#include <io/json_fields.hpp>
 #include <physics/solid.hpp>
 #include <sparse/selector_library.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <new>
+#include <optional>
 
 namespace {
 
@@ -87,10 +89,10 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
   reduce.add_option("--modes", c.modes, "Vibration modes, rigid ones included [15]")
       ->type_name("R")
       ->group(method);
-  reduce.add_option("--points", c.points, "Largest number of tets that stand for all [150]")
+  reduce.add_option("--points", c.points, "Largest number of tets that stand for all [150; 1000 with --target-error]")
       ->type_name("S")
       ->group(method);
-  reduce.add_option("--target-error", c.target_error, "Stop at this training error")
+  reduce.add_option("--target-error", c.target_error, "Take as few tets as reach this training error")
       ->type_name("SHARE")
       ->group(method);
   reduce.add_option("--selector", c.selector, "How they are chosen")
@@ -215,6 +217,27 @@ int fail(int code, std::string message) {
   return code;
 }
 
+/// "; did you mean --fix?" if a known word is near.
+std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
+  const std::optional<std::string> nearest = nearest_word(word, known);
+  return nearest ? "; did you mean " + *nearest + "?" : "";
+}
+
+/// The first word on the command line that no command or option takes.
+std::string not_expected(const CLI::App& app) {
+  std::vector<std::string> known;
+  if (app.get_subcommands().empty()) {
+    for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  } else {
+    for (const CLI::Option* option : app.get_subcommands().front()->get_options())
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  }
+  const std::vector<std::string> words = app.remaining(true);
+  if (words.empty()) return "";
+  const std::string word = words.front().substr(0, words.front().find('='));
+  return "'" + word + "' is not known here" + suggestion(word, known);
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Supple: reduced deformable objects, from a mesh to a real-time model with a measured error",
                "supple"};
@@ -244,7 +267,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& asked) {  // --help, --version
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {
-    return fail(2, error.what());
+    const std::string stray = not_expected(app);
+    return fail(2, stray.empty() ? error.what() : stray);
   } catch (const InputError& error) {
     return fail(2, error.what());
   } catch (const std::invalid_argument& error) {

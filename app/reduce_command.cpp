@@ -84,15 +84,20 @@ InvertedPoses inverted_poses(const std::string& word) {
                             : InvertedPoses::Redraw;
 }
 
+constexpr Index largest_search = 1000;  // points, if only a target error is given
+
 ReduceOptions reduce_options(const ReduceCommand& command) {
   ReduceOptions options = command.recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
   options.subspace = command.subspace;
   options.seed = command.seed;
   if (command.modes) options.modes = *command.modes;
   if (command.poses) options.poses.count = *command.poses;
-  if (command.points) options.points = *command.points;
   if (command.held_out) options.held_out_poses = *command.held_out;
-  if (command.target_error) options.target_error = *command.target_error;
+  if (command.target_error) {
+    options.target_error = *command.target_error;
+    options.points = largest_search;
+  }
+  if (command.points) options.points = *command.points;
   if (command.omega_exponent) options.poses.omega_exponent = *command.omega_exponent;
   if (!command.amplitudes.empty()) options.poses.amplitudes = command.amplitudes;
   if (command.selector) options.selector = *command.selector;
@@ -247,7 +252,7 @@ void draw_spectrum(const std::filesystem::path& path, const ReduceReport& report
                    .y = {.label = "frequency [Hz]", .low = 0.0},
                    .series = {{"all tets", number, hertz(report.exact_eigenvalues), PlotStyle::LinePoints},
                               {std::to_string(report.points) + " selected tets", number,
-                               hertz(report.fitted_eigenvalues), PlotStyle::Points}}});
+                               hertz(report.fitted_eigenvalues), PlotStyle::Markers}}});
 }
 
 void print_summary(const ReduceCommand& command, const ReducedModel& model, const ReduceReport& report) {

@@ -192,6 +192,7 @@ void draw_frames(const std::filesystem::path& path, const Points& rest,
   options.height = 800;
   options.scale.label = "displacement [m]";
   options.scale.low = 0.0;
+  options.scale.high = scale_end(objects);
   write_picture(path, objects, options);
 }
 

@@ -1,6 +1,8 @@
 #include <app/exit_guard.hpp>
 #include <app/surface.hpp>
 
+#include <cmath>
+
 namespace supple {
 
 Surface::Surface(const TetMesh& mesh) : triangles(boundary_faces(mesh)) {
@@ -17,6 +19,15 @@ Surface::Surface(const TetMesh& mesh) : triangles(boundary_faces(mesh)) {
 
 Points Surface::rows(const Points& all) const {
   return all(nodes, Eigen::all);
+}
+
+double scale_end(const std::vector<PictureObject>& objects) {
+  double largest = 0;
+  for (const PictureObject& object : objects)
+    if (object.scalar.size() > 0) largest = std::max(largest, object.scalar.maxCoeff());
+  if (!(largest > 0)) return 1;
+  const double unit = std::pow(10, std::floor(std::log10(largest)) - 1);
+  return std::ceil(largest / unit * (1 - 1e-12)) * unit;
 }
 
 void write_picture(const std::filesystem::path& path, const std::vector<PictureObject>& objects,

@@ -58,11 +58,10 @@ void print_stages(std::FILE* out, const std::vector<std::pair<std::string, doubl
     std::fprintf(out, "  %-*s %9.3f s\n", static_cast<int>(width), name.c_str(), time);
   };
   std::fputs("time\n", out);
-  for (const auto& [name, time] : seconds)
-    if (time >= 0.01 * total) {
-      print(name, time);
-      rest -= time;
-    }
+  for (const auto& [name, time] : seconds) {
+    print(name, time);
+    rest -= time;
+  }
   if (rest >= 0.0005) print("other", rest);
   print("total", total);
 }

@@ -22,7 +22,7 @@ void warn(std::string_view message);
 /// Names on the left, values on the right, in columns.
 using Rows = std::vector<std::pair<std::string, std::string>>;
 void print_rows(std::FILE* out, std::string_view title, const Rows& rows);
-/// Stages in order, then their total; what took less than a hundredth of it is summed up.
+/// Stages in order, what they leave of the total, and the total.
 void print_stages(std::FILE* out, const std::vector<std::pair<std::string, double>>& seconds, double total);
 
 /// The shortest text that gives back the same double.

@@ -159,7 +159,7 @@ std::string style_commands(PlotStyle style, std::size_t series) {
   switch (style) {
     case PlotStyle::Line:
       return "with lines linewidth 2" + colour;
-    case PlotStyle::Points:
+    case PlotStyle::Markers:
       return "with points" + points + colour;
     case PlotStyle::LinePoints:
       return "with linespoints linewidth 2" + points + colour;

@@ -21,7 +21,7 @@ struct Axis {
 
 enum class PlotStyle {
   Line,
-  Points,      ///< measurements
+  Markers,     ///< measurements
   LinePoints,  ///< few points that belong to one another
   DashedLine,  ///< a reference, a bound, a model
 };

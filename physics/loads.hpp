@@ -22,8 +22,8 @@ struct PointSpring {
 /// What acts on an object at one moment.
 struct Loads {
   Point gravity = Point::Zero();  ///< acceleration [m/s²]
-  std::vector<NodalForce> forces;
-  std::vector<PointSpring> springs;
+  std::vector<NodalForce> forces = {};
+  std::vector<PointSpring> springs = {};
 };
 
 /// Loads in the unknowns of a system: f_ext(u) = force − stiffness u. An empty stiffness stands for zero.

@@ -1,0 +1,90 @@
+#include <tests/app/supple_process.hpp>
+
+#include <gmock/gmock.h>
+
+#include <csignal>
+
+namespace supple::test {
+
+namespace {
+
+using testing::HasSubstr;
+
+using CommandLineTest = SuppleProcess;
+
+TEST_F(CommandLineTest, ExplainsItself) {
+  for (const Arguments& arguments :
+       {Arguments{"--help"}, Arguments{"reduce", "--help"}, Arguments{"simulate", "--help"},
+        Arguments{"compare", "--help"}, Arguments{"info", "--help"}, Arguments{"mesh", "--help"}}) {
+    const Outcome outcome = supple(arguments);
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.err, "");
+    EXPECT_THAT(outcome.out, HasSubstr("Usage: supple"));
+  }
+  EXPECT_THAT(supple({"reduce", "--help"}).out, HasSubstr("octopus"));
+  const Outcome version = supple({"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_EQ(version.out.rfind("supple ", 0), 0u);
+}
+
+TEST_F(CommandLineTest, RefusesWhatItDoesNotKnow) {
+  expect_refusal({}, {"subcommand"});
+  expect_refusal({"reduse"}, {"'reduse'", "reduce"});
+  expect_refusal({"reduce", "cube:2", "-o", "m", "--mode", "3"}, {"'--mode'", "--modes"});
+  expect_refusal({"reduce", "cube:2", "-o", "m", "--modes", "few"}, {"--modes", "few"});
+  expect_refusal({"info"}, {"SOURCE"});
+  expect_refusal({"info", "nothing"}, {"nothing"});
+  expect_refusal({"compare", "one"}, {"REFERENCE"});
+  expect_refusal({"compare", "one", "two"}, {"one"});
+  expect_refusal({"simulate", "nothing.supple"}, {"nothing.supple"});
+}
+
+TEST_F(CommandLineTest, IsQuietInPipesAndShowsProgressOnATerminal) {
+  const Arguments job{"reduce",  "bar:8x2x2", "-o",      "bar.supple", "--fix",    "x<=0",
+                      "--modes", "4",         "--poses", "20",         "--points", "20"};
+  const Outcome piped = supple(job), terminal = run_supple_on_terminal(job, folder);
+  EXPECT_EQ(piped.exit_code, 0);
+  EXPECT_EQ(piped.err, "");
+  EXPECT_THAT(piped.out, HasSubstr("total"));
+  EXPECT_EQ(terminal.exit_code, 0);
+  EXPECT_THAT(terminal.err, HasSubstr("%"));
+  EXPECT_EQ(terminal.err.substr(terminal.err.size() - 4), "\r\033[K");  // nothing is left of it
+  EXPECT_THAT(terminal.out, HasSubstr("total"));
+}
+
+TEST_F(CommandLineTest, EndsOnASignalWithoutPartialFiles) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const Outcome outcome = run_supple_until_signal(
+        {"reduce", "bar:60x20x20", "-o", "bar.supple", "--picture", "bar.png"}, folder, signal, 300);
+    EXPECT_EQ(outcome.exit_code, 128 + signal);
+    EXPECT_TRUE(files().empty()) << files().front();
+  }
+}
+
+TEST_F(CommandLineTest, DescribesMeshesAndWritesThem) {
+  const nlohmann::json info = report({"info", "bar:4x2x1"});
+  EXPECT_EQ(info["kind"], "mesh");
+  EXPECT_EQ(info["tets"], 48);
+  EXPECT_NEAR(info["volume"].get<double>(), 1 * 0.5 * 0.25, 1e-12);
+  EXPECT_EQ(info["components"], 1);
+  EXPECT_EQ(supple({"mesh", "bar:4x2x1", "-o", "bar.vtu"}).exit_code, 0);
+  const nlohmann::json again = report({"info", "bar.vtu"});
+  EXPECT_EQ(again["tets"], info["tets"]);
+  EXPECT_EQ(again["nodes"], info["nodes"]);
+  EXPECT_NEAR(again["volume"].get<double>(), info["volume"].get<double>(), 1e-12);
+}
+
+TEST_F(CommandLineTest, ShowsAMeshsWarningsOnStderr) {
+  // two tets that meet in an edge only
+  write("hinge.mesh",
+        "MeshVersionFormatted 2\nDimension 3\nVertices\n6\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 -1 0 0\n0 0 "
+        "-1 0\n"
+        "Tetrahedra\n2\n1 2 3 4 1\n1 2 5 6 1\nEnd\n");
+  const Outcome outcome = supple({"info", "hinge.mesh"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("supple: warning: hinge.mesh"));
+}
+
+}  // namespace
+
+}  // namespace supple::test

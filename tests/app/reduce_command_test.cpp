@@ -1,0 +1,293 @@
+#include <core/random.hpp>
+#include <core/tensor_file.hpp>
+#include <io/image.hpp>
+#include <reduction/reduced_model.hpp>
+#include <tests/app/supple_process.hpp>
+
+#include <gmock/gmock.h>
+
+namespace supple::test {
+
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class ReduceCommandTest : public SuppleProcess {
+ protected:
+  static Arguments small(Arguments more = {}) {
+    Arguments arguments{"reduce", "bar:8x2x2", "-o", "bar.supple", "--fix", "x<=0",       "--modes",
+                        "4",      "--poses",   "20", "--points",   "30",    "--held-out", "10"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  /// Two tets in regions 1 and 2, on the face x = 0.
+  void write_two_regions() const {
+    write("two.mesh",
+          "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 0\n0 1 0 0\n0 0 1 0\n1 0 0 0\n-1 0 0 0\n"
+          "Tetrahedra\n2\n1 2 3 4 1\n1 3 2 5 2\nEnd\n");
+  }
+};
+
+TEST_F(ReduceCommandTest, ReportsWhatItMeasured) {
+  const json report = this->report(small());
+  EXPECT_EQ(report["mesh"]["tets"], 8 * 2 * 2 * 6);
+  EXPECT_EQ(report["mesh"]["fixed_nodes"], 9);
+  EXPECT_EQ(report["dimension"], 36);  // 9 r
+  EXPECT_GE(report["points"], 1);
+  EXPECT_LE(report["points"], 30);
+  EXPECT_GT(report["training_error"], 0.0);
+  EXPECT_LT(report["training_error"], 0.5);
+  EXPECT_EQ(report["held_out"].size(), 3u);
+  EXPECT_EQ(report["held_out_error"], report["held_out"][0]["error"]);
+  EXPECT_EQ(report["eigenvalues"]["fitted"].size(), 5u);
+  EXPECT_EQ(report["eigenvalues"]["exact"].size(), 5u);
+  EXPECT_EQ(report["modes"]["omega"].size(), 4u);
+  EXPECT_EQ(report["poses"]["count"], 20);
+  EXPECT_GT(report["peak_memory"], 1e6);
+  EXPECT_FALSE(report["selection"]["stop_reason"].get<std::string>().empty());
+  double best = 1;
+  for (const json& step : report["selection"]["history"]) best = std::min(best, step["training_error"].get<double>());
+  EXPECT_NEAR(best, report["training_error"].get<double>(), 1e-6);
+  double sum = 0;
+  for (const auto& [stage, seconds] : report["seconds"].items())
+    if (stage != "total") sum += seconds.get<double>();
+  EXPECT_LE(sum, report["seconds"]["total"].get<double>() * (1 + 1e-9));
+  EXPECT_TRUE(report["seconds"].contains("selection"));
+
+  const json info = this->report({"info", "bar.supple"});
+  EXPECT_EQ(info["dimension"], report["dimension"]);
+  EXPECT_EQ(info["points"], report["points"]);
+  EXPECT_EQ(info["mesh"]["nodes"], 9 * 3 * 3);
+  EXPECT_EQ(info["fixed_nodes"], 9);
+  EXPECT_EQ(info["provenance"]["options"], report["options"]);
+  EXPECT_EQ(info["provenance"]["training_error"], report["training_error"]);
+  EXPECT_EQ(files(), Arguments{"bar.supple"});
+}
+
+TEST_F(ReduceCommandTest, GivesTheSameBytesForTheSameSeedWhateverTheThreads) {
+  const auto bytes = [&](const Arguments& more) {
+    EXPECT_EQ(supple(small(more)).exit_code, 0);
+    return read("bar.supple");
+  };
+  const std::string one = bytes({"--threads", "1"});
+  EXPECT_TRUE(one == bytes({"--threads", "2"}));
+  EXPECT_FALSE(one == bytes({"--seed", "2"}));
+}
+
+TEST_F(ReduceCommandTest, TakesRecipesAndWhatOverridesThem) {
+  const json paper =
+      report(small({"--recipe", "paper", "--amplitude", "0.02", "--amplitude", "0.01"}))["options"];
+  EXPECT_EQ(paper["selector"], "nn-htp");
+  EXPECT_EQ(paper["norm"], "mass");
+  EXPECT_EQ(paper["omega_exponent"], 1);
+  EXPECT_EQ(paper["poses"], 20);
+  EXPECT_EQ(paper["amplitudes"], json({0.02, 0.01}));
+  const json usual = report(small({"--norm", "mass"}))["options"];
+  EXPECT_EQ(usual["norm"], "mass");
+  EXPECT_EQ(usual["omega_exponent"], 2);
+}
+
+TEST_F(ReduceCommandTest, UnderstandsUnits) {
+  const json a = report(small({"--young", "0.2 MPa", "--density", "1.1 g/m^3"}));
+  const json b = report(small({"--young", "2e5", "--density", "1.1e-3"}));
+  EXPECT_NEAR(a["modes"]["omega"][0].get<double>() / b["modes"]["omega"][0].get<double>(), 1, 1e-9);
+  EXPECT_NEAR(a["mesh"]["mass"].get<double>() / b["mesh"]["mass"].get<double>(), 1, 1e-12);
+}
+
+TEST_F(ReduceCommandTest, ReducesByModesAloneAndByMooneyRivlin) {
+  EXPECT_EQ(report(small({"--subspace", "modal"}))["dimension"], 4);
+  EXPECT_EQ(report({"info", "bar.supple"})["subspace"], "modal");
+  const json mooney = report(small({"--material", "mooney-rivlin"}));
+  EXPECT_EQ(mooney["dimension"], 36);
+  EXPECT_EQ(report({"info", "bar.supple"})["law"], "mooney-rivlin");
+  EXPECT_EQ(report({"info", "bar.supple"})["materials"][0].size(), 3u);
+}
+
+TEST_F(ReduceCommandTest, HoldsNodesByRuleBoxFileAndRegion) {
+  write_two_regions();
+  write("held.txt", "0\n1 # a comment\n");
+  const auto fixed = [&](const Arguments& how) {
+    Arguments arguments{"reduce", "two.mesh", "-o", "two.supple", "--modes",
+                        "2",      "--poses",  "10", "--points",   "2"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    Outcome outcome = supple([&] {
+      auto a = arguments;
+      a.insert(a.end(), {"--json", "-"});
+      return a;
+    }());
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.json()["mesh"]["fixed_nodes"].get<int>();
+  };
+  EXPECT_EQ(fixed({"--fix", "x<=0", "--fix", "y>=1"}), 4);
+  EXPECT_EQ(fixed({"--fix-box", "-2,-2,-2:-0.5,2,2", "--fix", "y>=1"}), 2);
+  EXPECT_EQ(fixed({"--fix-file", "held.txt"}), 2);
+  EXPECT_EQ(fixed({"--fix-region", "1"}), 4);
+}
+
+TEST_F(ReduceCommandTest, GivesRegionsTheirOwnMaterials) {
+  write_two_regions();
+  const Arguments job{"reduce", "two.mesh", "-o", "two.supple", "--fix", "x<=0",        "--modes",
+                      "2",      "--poses",  "10", "--points",   "2",     "--materials", "materials.json"};
+  write("materials.json", R"({"regions": {"2": {"young": "1 MPa", "density": 500}}})");
+  ASSERT_EQ(supple(job).exit_code, 0);
+  const ReducedModel model = load_model(folder / "two.supple");
+  EXPECT_THAT(model.solid.material_of_tet, ElementsAre(0, 1));
+  EXPECT_DOUBLE_EQ(model.solid.parameters(1, 1) / model.solid.parameters(0, 1), 10);
+  EXPECT_DOUBLE_EQ(model.solid.density[0], 1000);
+  EXPECT_DOUBLE_EQ(model.solid.density[1], 500);
+
+  std::filesystem::remove(folder / "two.supple");
+  write("materials.json", R"({"regions": {"3": {"young": "1 MPa"}}})");
+  expect_refusal(job, {"materials.json", "3"});
+  write("materials.json", R"({"regions": {"2": {"yung": "1 MPa"}}})");
+  expect_refusal(job, {"materials.json", "yung", "young"});
+  EXPECT_THAT(files(), ElementsAre("materials.json", "two.mesh"));
+}
+
+TEST_F(ReduceCommandTest, FitsPosesOfAFile) {
+  const Index dofs = 3 * 9 * 3 * 3, count = 12;
+  Random random(1);
+  Matrix poses(dofs, count);
+  for (double& x : poses.reshaped()) x = 0.01 * random.normal();
+  TensorFileWriter tensors;
+  tensors.add("poses", poses);
+  tensors.write(folder / "poses.safetensors");
+  std::string npy = "\x93NUMPY\x01";
+  npy += '\0';
+  std::string header = "{'descr': '<f8', 'fortran_order': True, 'shape': (" + std::to_string(dofs) + ", " +
+                       std::to_string(count) + "), }";
+  header.resize(118, ' ');
+  npy += static_cast<char>(header.size());
+  npy += '\0';
+  npy += header;
+  npy.append(reinterpret_cast<const char*>(poses.data()), sizeof(double) * poses.size());
+  write("poses.npy", npy);
+  const json a = report(small({"--poses-file", "poses.safetensors"})),
+             b = report(small({"--poses-file", "poses.npy"}));
+  EXPECT_EQ(a["poses"]["count"], count);
+  EXPECT_EQ(a["training_error"], b["training_error"]);
+
+  write("short.npy", npy.substr(0, npy.size() - 8));
+  expect_refusal(small({"--poses-file", "short.npy"}), {"short.npy", "ends"});
+  tensors = {};
+  tensors.add("poses", Matrix(Matrix::Ones(7, 3)));
+  tensors.write(folder / "wrong.safetensors");
+  expect_refusal(small({"--poses-file", "wrong.safetensors"}), {"7"});
+}
+
+TEST_F(ReduceCommandTest, DrawsWhatItSelected) {
+  ASSERT_EQ(supple(small({"--picture", "bar.png", "--plots", "plots"})).exit_code, 0);
+  const Image picture = read_png(folder / "bar.png");
+  EXPECT_GT(picture.width, 600);
+  Index reddish = 0;
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) reddish += picture.at(x, y).r > picture.at(x, y).b + 0.2;
+  EXPECT_GT(reddish, 100);
+  EXPECT_GT(read_png(folder / "plots/error.png").width, 300);
+  EXPECT_GT(read_png(folder / "plots/spectrum.png").width, 300);
+}
+
+TEST_F(ReduceCommandTest, RefusesBadInputInOneLineAndLeavesNothing) {
+  const auto refuse = [&](const Arguments& arguments, const std::vector<std::string>& parts) {
+    expect_refusal(arguments, parts);
+  };
+  refuse({"reduce", "nowhere.msh", "-o", "m"}, {"nowhere.msh"});
+  refuse({"reduce", "bar:8x2", "-o", "m"}, {"bar:8x2"});
+  refuse(small({"--fix", "w<3"}), {"w<3"});
+  refuse(small({"--young", "3 kg"}), {"--young", "kg"});
+  refuse(small({"--poisson", "0.5"}), {"0.5"});
+  refuse(small({"--material", "jelly"}), {"--material", "jelly"});
+  refuse(small({"--selector", "best"}), {"best"});
+  refuse({"reduce", "bar:8x2x2", "-o", "m", "--points", "0"}, {"0"});
+  refuse(small({"--amplitude", "-1"}), {"amplitude"});
+  refuse({"reduce", "bar:8x2x2", "-o", "m", "--held-out", "-1"}, {"held-out"});
+  refuse(small({"--fix-file", "none.txt"}), {"none.txt"});
+  refuse(small({"--fix-region", "bone"}), {"bone"});
+  refuse(small({"--materials", "none.json"}), {"none.json"});
+  refuse(small({"--json", "no/such/report.json"}), {"no/such"});
+  refuse(small({"--damping-alpha", "-1"}), {"damping"});
+  refuse({"reduce", "bar:8x2x2", "-o", "no/such/bar.supple"}, {"no/such"});
+  refuse({"reduce", "bar:8x2x2"}, {"--output"});
+  refuse({"reduce", "bar:2x1x1", "-o", "m", "--modes", "1000"}, {"1000"});
+  EXPECT_TRUE(files().empty()) << files().front();
+}
+
+TEST_F(ReduceCommandTest, SaysWhenATargetIsOutOfReach) {
+  const Outcome outcome = supple(small({"--target-error", "1e-9"}));
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("--points"));
+}
+
+/// Damaged in any way, a model is refused with its name, and never crashes the reader.
+TEST_F(ReduceCommandTest, RefusesDamagedModels) {
+  ASSERT_EQ(supple(small()).exit_code, 0);
+  const std::string good = read("bar.supple");
+  Random random(3);
+  const auto refused = [&](const std::string& bytes) {
+    write("bad.supple", bytes);
+    try {
+      (void)load_model(folder / "bad.supple");
+      return false;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("bad.supple"));
+      return true;
+    }
+  };
+  for (int k = 0; k < 300; ++k) {
+    std::string bad = good;
+    char& byte = bad[random.below(k % 2 ? 4000 : static_cast<Index>(bad.size()))];
+    byte = static_cast<char>(byte ^ (1 << random.below(8)));
+    EXPECT_TRUE(refused(bad)) << k;
+    EXPECT_TRUE(refused(good.substr(0, random.below(static_cast<Index>(good.size()))))) << k;
+  }
+  write("bad.supple", good.substr(0, 5000));
+  expect_refusal({"info", "bad.supple"}, {"bad.supple"});
+  expect_refusal({"simulate", "bad.supple"}, {"bad.supple"});
+}
+
+/// Arrays that are whole but wrong: each is put in place of the good one, with checksums that hold.
+TEST_F(ReduceCommandTest, RefusesModelsWhoseArraysContradict) {
+  ASSERT_EQ(supple(small()).exit_code, 0);
+  const TensorFile good(folder / "bar.supple");
+  const auto with = [&](const std::string& name, const auto& replace) {
+    TensorFileWriter file;
+    file.metadata = {good.metadata().begin(), good.metadata().end()};
+    for (const auto& [key, tensor] : good.tensors()) {
+      if (key == name)
+        replace(file);
+      else if (tensor.dtype == DType::F64)
+        file.add(key, good.values<double>(key), tensor.shape);
+      else if (tensor.dtype == DType::I32)
+        file.add(key, good.values<std::int32_t>(key), tensor.shape);
+      else
+        file.add(key, good.values<std::int64_t>(key), tensor.shape);
+    }
+    file.write(folder / "bad.supple");
+  };
+  for (const auto& [name, tensor] : good.tensors()) {
+    with(name, [](TensorFileWriter&) {});
+    expect_refusal({"simulate", "bad.supple", "--time", "1 ms"}, {"bad.supple", name});
+    // values that no model can have: NaN; indices out of range
+    with(name, [&, name = name, tensor = tensor](TensorFileWriter& file) {
+      const std::size_t count = tensor.bytes.size() / size_of(tensor.dtype);
+      if (tensor.dtype == DType::F64)
+        file.add(name, std::span<const double>(std::vector<double>(count, std::nan(""))), tensor.shape);
+      else if (tensor.dtype == DType::I32)
+        file.add(name, std::span<const std::int32_t>(std::vector<std::int32_t>(count, -1)), tensor.shape);
+      else
+        file.add(name, std::span<const std::int64_t>(std::vector<std::int64_t>(count, 1 << 30)),
+                 tensor.shape);
+    });
+    const Outcome outcome = supple({"simulate", "bad.supple", "--time", "1 ms"});
+    EXPECT_LE(outcome.exit_code, 2) << name;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), outcome.exit_code == 0 ? 0 : 1)
+        << name;
+  }
+}
+
+}  // namespace
+
+}  // namespace supple::test

@@ -1,0 +1,258 @@
+#include <io/csv.hpp>
+#include <io/image.hpp>
+#include <tests/app/supple_process.hpp>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace supple::test {
+
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class SimulateCommandTest : public SuppleProcess {
+ protected:
+  void reduce_bar(Arguments more = {}) const {
+    Arguments arguments{"reduce", "bar:8x2x2", "-o", "bar.supple", "--fix", "x<=0",       "--modes",
+                        "6",      "--poses",   "40", "--points",   "60",    "--held-out", "0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = supple(arguments);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  void reduce_ball() const {
+    const Outcome outcome = supple({"reduce", "ball:5", "-o", "ball.supple", "--modes", "9", "--poses", "20",
+                                    "--points", "30", "--held-out", "0"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  CsvTable table(const std::string& name) const { return read_csv(folder / name); }
+};
+
+TEST_F(SimulateCommandTest, WritesWhatItReports) {
+  reduce_bar();
+  const json report =
+      this->report({"simulate", "bar.supple", "-o", "run", "--track", "7", "--track", "80", "--every", "4"});
+  const Index steps = report["steps"];
+  EXPECT_EQ(steps, 180);
+  EXPECT_EQ(report["status"], "complete");
+  EXPECT_EQ(report["system"], "reduced");
+  EXPECT_EQ(report["unknowns"], 54);
+  EXPECT_EQ(report["solver"], "broyden");
+  EXPECT_EQ(report["missed_steps"], 0);
+  EXPECT_LE(report["worst_residual"], report["tolerance"]);
+  EXPECT_GT(report["steps_per_second"], 0.0);
+  EXPECT_NEAR(report["steps_per_second"].get<double>() * report["seconds"]["time steps"].get<double>(),
+              static_cast<double>(steps), 1e-6);
+  EXPECT_EQ(json::parse(read("run/report.json")), report);
+
+  const CsvTable energies = table("run/energies.csv"), tracked = table("run/tracked.csv");
+  ASSERT_EQ(energies.num_rows(), steps + 1);
+  ASSERT_EQ(tracked.num_rows(), steps + 1);
+  double mean = 0;
+  for (const double count : energies.numbers("iterations")) mean += count / static_cast<double>(steps);
+  EXPECT_NEAR(mean, report["mean_iterations"].get<double>(), 1e-9);
+  double largest = 0;
+  for (Index k = 0; k <= steps; ++k)
+    largest = std::max(largest, std::hypot(tracked.numbers("ux80")[k], tracked.numbers("uy80")[k],
+                                           tracked.numbers("uz80")[k]));
+  EXPECT_NEAR(largest, report["tracked"][1]["largest_displacement"].get<double>(), 1e-12);
+
+  const std::string list = read("run/series.pvd");
+  Index frames = 0;
+  for (std::size_t at = 0; (at = list.find(".vtu", at)) != std::string::npos; ++at) ++frames;
+  EXPECT_EQ(frames, report["frames"].get<Index>());
+  EXPECT_EQ(frames, steps / 4 + 1);
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/series_000045.vtu"));
+  EXPECT_GT(read_png(folder / "run/picture.png").width, 600);
+  EXPECT_GT(read_png(folder / "run/energy.png").width, 300);
+}
+
+TEST_F(SimulateCommandTest, ConservesEnergyAsLoadsGiveIt) {
+  reduce_bar();
+  for (const Arguments& how : {Arguments{}, Arguments{"--full"}}) {
+    Arguments arguments{"simulate", "bar.supple", "-o", "run", "--frames", "none"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    (void)report(arguments);
+    const CsvTable energies = table("run/energies.csv");
+    const Vector total = energies.numbers("kinetic") + energies.numbers("elastic"),
+                 work = energies.numbers("work");
+    // average acceleration keeps energy exactly for linear forces, and to second order in the step for others
+    EXPECT_LT((total - work).cwiseAbs().maxCoeff(), 0.02 * work.maxCoeff());
+    EXPECT_GT(work.maxCoeff(), 0);
+    EXPECT_FALSE(std::filesystem::exists(folder / "run/series.pvd"));
+  }
+}
+
+/// A free body under gravity: Newmark's average acceleration is exact for constant accelerations.
+TEST_F(SimulateCommandTest, LetsFreeObjectsFall) {
+  reduce_ball();
+  write("fall.json",
+        R"({"duration": 0.5, "step": "10 ms", "gravity": [0, -9.81, 0], "output": {"track": [3]}})");
+  for (const Arguments& how : {Arguments{}, Arguments{"--full"}}) {
+    Arguments arguments{"simulate", "ball.supple", "--scene", "fall.json", "-o", "run"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    (void)report(arguments);
+    const CsvTable tracked = table("run/tracked.csv");
+    const Vector t = tracked.numbers("time"), y = tracked.numbers("uy3");
+    ASSERT_EQ(t.size(), 51);
+    EXPECT_LT((y + 0.5 * 9.81 * t.cwiseAbs2()).cwiseAbs().maxCoeff(), 1e-5);
+    EXPECT_LT(tracked.numbers("ux3").cwiseAbs().maxCoeff(), 1e-5);
+  }
+}
+
+/// A pull that ends: the step across its end sees half of it, by the trapezoidal rule.
+TEST_F(SimulateCommandTest, EndsLoadsInTime) {
+  reduce_ball();
+  const double a = 2, h = 0.01, until = 0.1;
+  write("push.json",
+        R"({"duration": 0.4, "step": 0.01, "pulls": [{"acceleration": [2, 0, 0], "until": "100 ms"}],
+                         "output": {"track": [3]}})");
+  (void)report({"simulate", "ball.supple", "--scene", "push.json", "-o", "run"});
+  const CsvTable tracked = table("run/tracked.csv");
+  const Vector x = tracked.numbers("ux3");
+  for (Index k = 30; k < 40; ++k) EXPECT_NEAR((x[k + 1] - x[k]) / h, a * (until + h / 2), 1e-6);
+}
+
+/// The same force as a resultant over a side, and as a force on its nodes; a ramp starts from nothing.
+TEST_F(SimulateCommandTest, AcceptsEachWayToNameThings) {
+  reduce_bar();
+  const auto displacement = [&](const std::string& scene) -> Vector {
+    write("scene.json", scene);
+    (void)report({"simulate", "bar.supple", "--scene", "scene.json", "-o", "run", "--frames", "none",
+                  "--track", "80"});
+    return table("run/tracked.csv").numbers("uy80");
+  };
+  const std::string start = R"({"duration": 0.2, "step": 0.01, )";
+  const Vector by_node = displacement(start + R"("forces": [{"node": 80, "force": [0, 1, 0]}]})");
+  const Vector by_point =
+      displacement(start + R"("forces": [{"at": [1.2, 0.3, 0.3], "force": ["0 N", "1000 mN", 0]}]})");
+  EXPECT_EQ(by_node, by_point);
+  EXPECT_GT(by_node.maxCoeff(), 1e-6);
+  const Vector by_rule = displacement(start + R"("forces": [{"nodes": "x>=1", "force": [0, 1, 0]}]})");
+  EXPECT_NEAR(by_rule.maxCoeff() / by_node.maxCoeff(), 1, 0.3);
+  const Vector ramped = displacement(start + R"("forces": [{"node": 80, "force": [0, 1, 0], "ramp": 0.2}]})");
+  EXPECT_LT(ramped[1], 0.1 * by_node[1]);
+  EXPECT_GT(ramped[1], 0);
+
+  // node 80 is the corner (1, 0.25, 0.25) at rest
+  const Vector to_target =
+      displacement(start + R"("springs": [{"node": 80, "stiffness": 50, "target": [1, 0.35, 0.25]}]})");
+  const Vector by_displacement = displacement(
+      start + R"("springs": [{"node": 80, "stiffness": "0.05 N/mm", "displacement": [0, 0.1, 0]}]})");
+  const Vector along_path = displacement(
+      start + R"("springs": [{"node": 80, "stiffness": 50, "path": [{"time": 0, "displacement": [0, 0.1, 0]},
+                                                                   {"time": 1, "displacement": [0, 0.1, 0]}]}]})");
+  EXPECT_LT((to_target - by_displacement).cwiseAbs().maxCoeff(), 1e-7 * to_target.cwiseAbs().maxCoeff());
+  EXPECT_LT((along_path - by_displacement).cwiseAbs().maxCoeff(), 1e-7 * to_target.cwiseAbs().maxCoeff());
+}
+
+/// A stiff spring wins: the node ends where the spring pulls it, reduced and full.
+TEST_F(SimulateCommandTest, SpringsPullNodesToTheirTargets) {
+  reduce_bar({"--damping-alpha", "20"});
+  write("hold.json", R"({"duration": 2, "step": 0.02, "output": {"track": [80]},
+                         "springs": [{"nodes": "x>=1", "stiffness": 1e6, "displacement": [0, 0.05, 0], "ramp": 0.5}]})");
+  for (const Arguments& how : {Arguments{}, Arguments{"--full"}, Arguments{"--solver", "newton"}}) {
+    Arguments arguments{"simulate", "bar.supple", "--scene", "hold.json", "-o", "run", "--frames", "none"};
+    arguments.insert(arguments.end(), how.begin(), how.end());
+    EXPECT_EQ(report(arguments)["missed_steps"], 0);
+    const Vector y = table("run/tracked.csv").numbers("uy80");
+    EXPECT_NEAR(y[y.size() - 1], 0.05, 1e-3);
+  }
+}
+
+TEST_F(SimulateCommandTest, ComparesTrajectories) {
+  reduce_bar();
+  (void)report({"simulate", "bar.supple", "-o", "run", "--every", "2"});
+  (void)report({"simulate", "bar.supple", "--full", "-o", "full", "--every", "1", "--time", "0.5"});
+  const json same = report({"compare", "run", "run/trajectory.safetensors"});
+  EXPECT_EQ(same["position_error"]["relative"], 0.0);
+  EXPECT_EQ(same["velocity_error"]["largest"], 0.0);
+  EXPECT_EQ(same["energy_error"]["relative"], 0.0);
+
+  const json report = this->report({"compare", "run", "full", "-o", "comparison"});
+  EXPECT_GT(report["position_error"]["relative"], 0.0);
+  EXPECT_LT(report["position_error"]["relative"], 0.15);
+  EXPECT_LE(report["position_error"]["relative"], report["position_error"]["largest"].get<double>() * 3);
+  EXPECT_GT(report["speed_up"], 0.0);
+  EXPECT_NEAR(report["until"].get<double>(), 0.5, 0.02);
+  const CsvTable errors = table("comparison/errors.csv");
+  EXPECT_EQ(errors.num_rows(), report["frames"].get<Index>());
+  EXPECT_NEAR(errors.numbers("position_error").maxCoeff(), report["position_error"]["largest"].get<double>(),
+              1e-12);
+  EXPECT_NEAR(errors.numbers("largest_distance").maxCoeff(),
+              report["largest_distance"]["metres"].get<double>(), 1e-12);
+  EXPECT_GT(read_png(folder / "comparison/errors.png").width, 300);
+  EXPECT_GT(read_png(folder / "comparison/comparison.png").width, 600);
+
+  (void)this->report({"simulate", "bar.supple", "-o", "other", "--step", "0.011"});
+  expect_refusal({"compare", "other", "full"}, {"no frame"});
+  reduce_bar({"--seed", "2"});
+  expect_refusal({"compare", "run", "full"}, {"changed"});
+  std::filesystem::remove(folder / "bar.supple");
+  expect_refusal({"compare", "run", "full"}, {"gone"});
+}
+
+TEST_F(SimulateCommandTest, RefusesBadScenesInOneLineAndLeavesNothing) {
+  reduce_bar();
+  const auto refuse = [&](const std::string& scene, const std::vector<std::string>& parts) {
+    write("scene.json", scene);
+    expect_refusal({"simulate", "bar.supple", "--scene", "scene.json", "-o", "run"}, parts);
+    EXPECT_FALSE(std::filesystem::exists(folder / "run")) << scene;
+  };
+  refuse(R"({"gravty": [0, 0, 0]})", {"scene.json", "gravty", "gravity"});
+  refuse(R"({"gravity": [0, 0]})", {"/gravity", "3"});
+  refuse(R"({"step": "5 kg"})", {"/step", "kg"});
+  refuse(R"({"duration": -1})", {"/duration"});
+  refuse(R"({"forces": [{"force": [0, 0, 1]}]})", {"/forces/0", "node"});
+  refuse(R"({"forces": [{"node": 1, "at": [0, 0, 0], "force": [0, 0, 1]}]})", {"/forces/0", "one of"});
+  refuse(R"({"forces": [{"node": 81, "force": [0, 0, 1]}]})", {"/forces/0/node", "81", "80"});
+  refuse(R"({"forces": [{"nodes": "x>9", "force": [0, 0, 1]}]})", {"/forces/0/nodes", "x>9"});
+  refuse(R"({"forces": [{"node": 1, "force": [0, 0, 1], "from": 2, "until": 1}]})", {"/forces/0/until"});
+  refuse(R"({"springs": [{"node": 1, "stiffness": 0}]})", {"/springs/0/stiffness"});
+  refuse(R"({"springs": [{"node": 1, "stiffness": 1, "target": [0, 0, 0], "displacement": [0, 0, 0]}]})",
+         {"/springs/0"});
+  refuse(R"({"springs": [{"nodes": "x>50%", "stiffness": 1, "target": [0, 0, 0]}]})", {"/springs/0/target"});
+  refuse(R"({"springs": [{"node": 1, "stiffness": 1, "path": [{"time": 1, "displacement": [0, 0, 0]},
+                                                          {"time": 1, "displacement": [0, 0, 0]}]}]})",
+         {"/springs/0/path/1/time"});
+  refuse(R"({"solver": {"method": "magic"}})", {"/solver/method", "magic"});
+  refuse(R"({"output": {"track": [99]}})", {"/output/track", "99"});
+  refuse(R"({"duration": 1)", {"scene.json"});
+  refuse("", {"scene.json"});
+  expect_refusal({"simulate", "bar.supple", "--scene", "none.json", "-o", "run"}, {"none.json"});
+  expect_refusal({"simulate", "bar.supple", "--step", "0", "-o", "run"}, {"step"});
+  expect_refusal({"simulate", "bar.supple", "--time", "1e12", "-o", "run"}, {"steps"});
+  expect_refusal({"simulate", "bar.supple", "--track", "-1", "-o", "run"}, {"track"});
+  expect_refusal({"simulate", "bar.supple", "--every", "0", "-o", "run"}, {"every"});
+  expect_refusal({"simulate", "bar.supple", "--full", "--solver", "broyden", "-o", "run"}, {"newton"});
+  expect_refusal({"simulate", "bar.supple", "-o", "bar.supple"}, {"bar.supple"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "run"));
+}
+
+TEST_F(SimulateCommandTest, StopsWithAnErrorWhenTheMotionIsNotFinite) {
+  reduce_bar();
+  write("burst.json",
+        R"({"duration": 1, "step": 0.05, "forces": [{"node": 80, "force": [1e250, 0, 0], "from": 0.48}]})");
+  expect_refusal({"simulate", "bar.supple", "--scene", "burst.json", "-o", "run", "--json", "report.json"},
+                 {"step 10", "finite"}, 1);
+  const json report = json::parse(read("report.json"));
+  EXPECT_EQ(report["status"], "not-finite");
+  EXPECT_NEAR(report["duration"].get<double>(), 0.45, 1e-9);
+  EXPECT_EQ(table("run/energies.csv").num_rows(), 11);  // the last row says why it ended
+  EXPECT_EQ(table("run/energies.csv").texts("status").back(), "not-finite");
+}
+
+TEST_F(SimulateCommandTest, WarnsOfStepsThatMissTheTolerance) {
+  reduce_bar();
+  write("scene.json", R"({"gravity": [0, -1, 0], "solver": {"max_iterations": 1, "tolerance": 1e-9}})");
+  const Outcome outcome = supple({"simulate", "bar.supple", "--scene", "scene.json", "--json", "-"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("missed the tolerance"));
+  EXPECT_GT(outcome.json()["missed_steps"], 0);
+}
+
+}  // namespace
+
+}  // namespace supple::test

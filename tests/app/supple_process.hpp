@@ -1,0 +1,48 @@
+#pragma once
+/// \file The built command as a process of its own.
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace supple::test {
+
+using Arguments = std::vector<std::string>;
+
+struct Outcome {
+  int exit_code = -1;  ///< 128 + signal if a signal ended it
+  std::string out, err;
+
+  nlohmann::json json() const { return nlohmann::json::parse(out); }
+};
+
+/// Runs `supple` in a folder, its stdout and stderr in pipes.
+Outcome run_supple(const Arguments& arguments, const std::filesystem::path& folder);
+/// The same with stderr on a terminal.
+Outcome run_supple_on_terminal(const Arguments& arguments, const std::filesystem::path& folder);
+/// The same, sent `signal` after so many milliseconds.
+Outcome run_supple_until_signal(const Arguments& arguments, const std::filesystem::path& folder, int signal,
+                                int milliseconds);
+
+/// A fresh folder for each test, removed afterwards.
+class SuppleProcess : public testing::Test {
+ protected:
+  SuppleProcess();
+  ~SuppleProcess() override;
+
+  Outcome supple(const Arguments& arguments) const { return run_supple(arguments, folder); }
+  /// Demands success, silence on stderr, and a JSON report on stdout.
+  nlohmann::json report(Arguments arguments) const;
+  /// Demands exit code `code` and one line on stderr that holds every part.
+  void expect_refusal(const Arguments& arguments, const std::vector<std::string>& parts, int code = 2) const;
+  void write(const std::string& name, const std::string& text) const;
+  std::string read(const std::filesystem::path& name) const;
+  std::vector<std::string> files() const;  ///< in the folder, sorted
+
+  std::filesystem::path folder;
+};
+
+}  // namespace supple::test
