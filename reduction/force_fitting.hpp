@@ -263,15 +263,18 @@ class ForceFitting {
     require_size("metric.cols()", metric_->cols(), subspace_->dim());
     require(Q.cols() > 0, "there are no training poses");
     const Matrix LF = *metric_ * F_;
+    const Vector norms = LF.colwise().norm();
+    const double largest = norms.maxCoeff();
     scale_.resize(Q.cols());
     for (Index t = 0; t < Q.cols(); ++t) {
-      const double norm = LF.col(t).norm();
+      const double norm = norms[t];
       if (!std::isfinite(norm))
         throw InputError("pose " + std::to_string(t) +
                          ": the force is not finite (an inverted element of a material that is "
                          "undefined there?); choose smaller amplitudes, or shrink or redraw such poses");
-      if (norm == 0)
-        throw InputError("pose " + std::to_string(t) + ": there is no force, expected a deformed pose");
+      if (norm <= 1e-10 * largest)  // only rounding is left of a force that a rigid motion does not have
+        throw InputError("pose " + std::to_string(t) +
+                         ": there is no force, expected a pose that deforms the object");
       scale_[t] = 1 / norm;
     }
     b_.resize(LF.size());

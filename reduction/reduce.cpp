@@ -3,6 +3,7 @@
 #include <reduction/modal_basis.hpp>
 #include <reduction/reduce.hpp>
 #include <sparse/selector_library.hpp>
+#include <sparse/smallest_selection.hpp>
 
 #include <Eigen/Eigenvalues>
 
@@ -68,7 +69,7 @@ void fit_and_finish(const Solid& solid, const FullSystem<TetElasticity<Material>
   const double total_mass = system.nodal_mass().sum(), diagonal = bounding_box(solid.mesh.nodes).diagonal();
   const ReducedModes modes = stage("reduced stiffness", [&](auto) {
     model.rest_stiffness = project_stiffness(*subspace, system);
-    return reduced_modes(model.rest_stiffness);
+    return reduced_modes(model.rest_stiffness, subspace->report.known_rigid_modes());
   });
   PoseOptions pose_options = options.poses;
   pose_options.seed += 1000003 * options.seed;  // the seed of a run moves all random choices
@@ -120,7 +121,11 @@ void fit_and_finish(const Solid& solid, const FullSystem<TetElasticity<Material>
       request.validate = [&](const std::vector<Index>& indices, VectorIn weights) {
         return held_out.front().second.error(indices, weights);
       };
-    return select_by_name(options.selector, AnyProblem(fitting), request, options.seed);
+    const auto select = [&](const AnyProblem& problem, const SelectionRequest& some) {
+      return select_by_name(options.selector, problem, some, options.seed);
+    };
+    return options.target_error > 0 ? smallest_selection(select, AnyProblem(fitting), request)
+                                    : select(AnyProblem(fitting), request);
   });
   // components that a selector had to keep at weight zero do no work
   for (Index k = 0; k < selection.size(); ++k)

@@ -21,7 +21,7 @@ struct ReduceOptions {
   Matrix given_poses;  ///< d × T, instead of random ones; or 3n × T displacements, projected to the subspace
   std::string selector = "nn-sp";  ///< see known_selectors()
   Index points = 150;              ///< s, largest number of components
-  double target_error = 0;         ///< stop at this training error
+  double target_error = 0;         ///< if positive: as few components as reach this training error
   Index held_out_poses = 100;      ///< at each of three amplitudes; 0: measure nothing held out
   std::uint64_t seed = 1;
 

@@ -1,7 +1,7 @@
 #include <core/tensor_file.hpp>
+#include <reduction/reduced_model.hpp>
 
 #include <charconv>
-#include <reduction/reduced_model.hpp>
 
 namespace supple {
 
@@ -110,8 +110,11 @@ ReducedModel load_model(const std::filesystem::path& path) {
     auto basis = std::make_shared<KroneckerBasis<block>>();
     basis->W = file.matrix("subspace.W", 3 * n / block, TensorFile::any);
     basis->report.omega = file.vector("subspace.omega");
-    basis->report.residuals = file.vector("subspace.residuals");
+    basis->report.residuals = file.vector("subspace.residuals", basis->report.omega.size());
     basis->report.rigid_modes = whole_number("subspace.rigid_modes", file.metadata("subspace.rigid_modes"));
+    if (basis->report.rigid_modes < 0 || basis->report.rigid_modes > basis->report.omega.size())
+      throw fail("subspace.rigid_modes is " + std::to_string(basis->report.rigid_modes) + ", expected 0 to " +
+                 std::to_string(basis->report.omega.size()));
     model.subspace = std::shared_ptr<const KroneckerBasis<block>>(std::move(basis));
   };
   const std::string& block = file.metadata("subspace.block");
@@ -126,6 +129,9 @@ ReducedModel load_model(const std::filesystem::path& path) {
     if (i < 0 || i >= m)
       throw fail("selection.indices names tet " + std::to_string(i) + ", expected 0 to " +
                  std::to_string(m - 1));
+    if (!model.indices.empty() && i <= model.indices.back())
+      throw fail("selection.indices are not ascending: " + std::to_string(i) + " follows " +
+                 std::to_string(model.indices.back()));
     model.indices.push_back(i);
   }
   model.weights = file.vector("selection.weights", static_cast<Index>(model.indices.size()));

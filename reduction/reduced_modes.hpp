@@ -4,6 +4,8 @@
 #include <physics/node_numbering.hpp>
 #include <reduction/subspace.hpp>
 
+#include <optional>
+
 namespace supple {
 
 /// UᵀKU, d × d, for K over the free unknowns of `system`. \note O(d · nonzeros(K))
@@ -14,12 +16,14 @@ Matrix project_stiffness(const S& subspace, const System& system);
 struct ReducedModes {
   Vector omega;        ///< d, ascending [rad/s]
   Matrix Phi;          ///< d × d, orthonormal
-  Index num_zero = 0;  ///< leading modes without energy (rigid motions): ω̄² below 1e-10 of the largest
+  Index num_zero = 0;  ///< leading modes without energy (rigid motions)
 
   /// ω̄ with the energy-free modes given the lowest frequency that is not zero, so that it can be divided by.
   Vector positive_omega() const;
 };
-ReducedModes reduced_modes(const Matrix& reduced_stiffness);
+/// \param num_rigid  how many motions have no energy, where that is known. Otherwise those with ω̄ up to 1e-5 of
+/// the largest count, which a very stiff part can push a flexible mode below.
+ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index> num_rigid = {});
 
 // ---------------------------------------------------------------------------------------------------------------------
 

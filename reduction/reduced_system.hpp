@@ -54,10 +54,11 @@ class ReducedSystem {
     for (Index first = 0; first < s; first += Pack::size) {
       const PackIndices lanes = consecutive_components(first, s);
       PackIndices components;
-      Pack weight(0.0);  // lanes past the end keep weight 0
+      const Index repeats = std::max<Index>(0, first + Pack::size - s) + 1;  // they share the last weight
+      Pack weight;
       for (int k = 0; k < Pack::size; ++k) {
         components[k] = indices[lanes[k]];
-        if (first + k < s) weight.set(k, weights[first + k]);
+        weight.set(k, weights[lanes[k]] / (lanes[k] == s - 1 ? repeats : 1));
       }
       terms_.emplace_back(model, components);
       weights_.push_back(weight);

@@ -6,6 +6,7 @@
 #include <core/types.hpp>
 
 #include <concepts>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct SubspaceReport {
   Index rigid_modes = 0;  ///< how many of them are rigid motions
   Index dropped = 0;      ///< linearly dependent vectors that were left out
   std::vector<std::string> notes;  ///< what a user should know: missing or surplus rigid modes, …
+
+  /// The number of motions without energy, known once a flexible mode follows the rigid ones (no hinge does).
+  std::optional<Index> known_rigid_modes() const {
+    const bool known = rigid_modes < omega.size() && omega[rigid_modes] > 1e-6 * omega[omega.size() - 1];
+    return known ? std::optional(rigid_modes) : std::nullopt;
+  }
 };
 
 /// A subspace spanned by U = W ⊗ I_block: every scalar field, a column of W, acts on `block` components

@@ -215,6 +215,8 @@ TEST(ForceFitting, RefusesPosesThatItCannotUse) {
   EXPECT_THAT(message<InputError>(fit(L, Q)), testing::HasSubstr("pose 9: the force is not finite"));
   Q.col(9).setZero();
   EXPECT_THAT(message<InputError>(fit(L, Q)), testing::HasSubstr("pose 9: there is no force"));
+  Q.col(9) = 1e-12 * Q.col(8);  // what rounding leaves of a rigid motion is no larger
+  EXPECT_THAT(message<InputError>(fit(L, Q)), testing::HasSubstr("pose 9: there is no force"));
   EXPECT_THAT(message<std::invalid_argument>(fit(L, Matrix(d, 0))), testing::HasSubstr("no training poses"));
   EXPECT_THAT(message<std::invalid_argument>(fit(L, poses(d + 3, 4))), testing::HasSubstr("Q.rows()"));
   EXPECT_THAT(message<std::invalid_argument>(fit(Matrix::Identity(d - 1, d - 1), poses(d, 4))),

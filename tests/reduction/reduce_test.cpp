@@ -341,6 +341,7 @@ TEST_F(ModelFile, IsRefusedIfAnythingIsWrongWithIt) {
   };
   EXPECT_THAT(changed([](auto& m) { m.indices.back() = 144; }), testing::HasSubstr("names tet 144"));
   EXPECT_THAT(changed([](auto& m) { m.indices.pop_back(); }), testing::HasSubstr("selection.weights"));
+  EXPECT_THAT(changed([](auto& m) { m.indices[1] = m.indices[0]; }), testing::HasSubstr("not ascending"));
   EXPECT_THAT(changed([](auto& m) { m.weights[0] = -1; }), testing::HasSubstr("not all positive"));
   EXPECT_THAT(changed([](auto& m) { m.weights[0] = std::nan(""); }), testing::HasSubstr("not all positive"));
   EXPECT_THAT(changed([](auto& m) { m.solid.mesh.tets[3][1] = -2; }), testing::HasSubstr("names node -2"));
@@ -350,6 +351,20 @@ TEST_F(ModelFile, IsRefusedIfAnythingIsWrongWithIt) {
   EXPECT_THAT(changed([](auto& m) { m.rest_stiffness.setZero(8, 9); }), testing::HasSubstr("rest_stiffness"));
   EXPECT_THAT(changed([](auto& m) { std::swap(m.solid.mesh.tets[0][0], m.solid.mesh.tets[0][1]); }),
               testing::HasSubstr("volume"));
+}
+
+TEST(Reduce, TakesAsFewComponentsAsATargetErrorNeeds) {
+  ReduceOptions options = quick(100);
+  options.held_out_poses = 0;
+  options.target_error = 0.1;
+  ReduceReport few, all;
+  (void)reduce(bar_solid(), options, &few);
+  EXPECT_LE(few.training_error, 0.1);
+  EXPECT_LT(few.points, 100);
+  options.points = few.points * 9 / 10 - 1;
+  options.target_error = 0;
+  (void)reduce(bar_solid(), options, &all);
+  EXPECT_GT(all.training_error, 0.1);
 }
 
 }  // namespace

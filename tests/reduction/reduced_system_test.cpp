@@ -124,6 +124,19 @@ TEST(ReducedSystem, SumsWeightedComponents) {
   }
 }
 
+TEST(ReducedSystem, GivesInvertedMooneyRivlinInfiniteEnergyNotNaN) {
+  const TetMesh mesh = bar_mesh();
+  const FullSystem<TetElasticity<MooneyRivlin>> system(
+      TetElasticity<MooneyRivlin>(mesh, MooneyRivlin<double>::from({.young = 1e5, .poisson = 0.35})),
+      lumped_mass(mesh, 1000.0), bar_end(mesh));
+  const NodalBasis basis = ExtendedModalBasis{.num_modes = 3}(system);
+  const Vector q = random_vector(basis.dim(), 100, 1);
+  for (const Index count : {1, 7, 8, 9}) {
+    const auto reduced = reduced_system(system, basis, all_components(count), Vector::Ones(count));
+    EXPECT_EQ(reduced.energy(q), std::numeric_limits<double>::infinity()) << count << " components";
+  }
+}
+
 TEST(ReducedSystem, RefusesWhatDoesNotFit) {
   const StvkBar system = clamped_bar();
   const NodalBasis basis = ExtendedModalBasis{.num_modes = 2}(system);
