@@ -8,17 +8,14 @@
 #include <io/builtin_meshes.hpp>
 #include <io/mesh_reader.hpp>
 #include <io/node_sets.hpp>
-#include <physics/newmark.hpp>
+#include <reduction/pull_test.hpp>
 #include <reduction/reduce.hpp>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <iostream>
-#include <numbers>
 #include <numeric>
 
 using namespace supple;
@@ -44,54 +41,15 @@ double microseconds(const Call& call) {
   return median(batches);
 }
 
-/// What the lateral pull does: 120 steps of a 60th of the slowest period, without damping.
-struct Scene {
-  Point pull;   ///< acceleration [m/s²]
-  double step;  ///< [s]
-  int steps = 120;
-};
-
-struct Run {
-  Matrix trajectory;  // d × steps
-  json numbers;
-};
-
-template <DynamicalSystem System>
-Run simulate(const System& system, const Scene& scene, NonlinearSolver solver, double tolerance) {
-  Newmark newmark(system, scene.step, {.solver = solver, .tolerance = tolerance});
-  State state = State::at_rest(system.dim());
-  const auto load = system.project({.gravity = scene.pull});
-  newmark.balance(load, state);
-  Run run{Matrix(system.dim(), scene.steps), {}};
-  std::vector<double> seconds;
-  double iterations = 0, refreshes = 0, worst = 0;
-  int missed = 0;
-  for (int k = 0; k < scene.steps; ++k) {
-    const Stopwatch watch;
-    const StepReport report = newmark.step(load, state);
-    seconds.push_back(watch.seconds());
-    iterations += static_cast<double>(report.iterations);
-    refreshes += static_cast<double>(report.refreshes);
-    worst = std::max(worst, report.residual);
-    missed += report.status != Status::Converged;
-    run.trajectory.col(k) = state.u;
-  }
-  run.numbers = {{"step_median_us", 1e6 * median(seconds)},
-                 {"step_mean_us", 1e6 * std::accumulate(seconds.begin(), seconds.end(), 0.0) / scene.steps},
-                 {"iterations", iterations / scene.steps},
-                 {"refreshes", refreshes / scene.steps},
-                 {"worst_residual", worst},
-                 {"steps_that_missed_the_tolerance", missed}};
-  return run;
-}
-
-double largest_displacement(const ReducedModel& model, VectorIn q) {
-  return std::visit(
-      [&](const auto& basis) {
-        const Vector u = basis->reconstruct(q);
-        return Eigen::Map<const Points>(u.data(), u.size() / 3, 3).rowwise().norm().maxCoeff();
-      },
-      model.subspace);
+json numbers(const PulledMotion& motion) {
+  const double count = static_cast<double>(motion.seconds.size());
+  const double total = std::accumulate(motion.seconds.begin(), motion.seconds.end(), 0.0);
+  return {{"step_median_us", 1e6 * median(motion.seconds)},
+          {"step_mean_us", 1e6 * total / count},
+          {"iterations", motion.iterations},
+          {"refreshes", motion.refreshes},
+          {"worst_residual", motion.worst_residual},
+          {"steps_that_missed_the_tolerance", motion.missed_steps}};
 }
 
 }  // namespace
@@ -101,7 +59,7 @@ int main(int argc, char** argv) {
   std::string mesh_name, recipe = "default", law = "stvk", subspace = "extended", selector;
   std::vector<std::string> fix;
   Index modes = 15, points = 150, poses = 0;
-  double target = 0.25, amplitude = 0, tolerance = 1e-6;
+  double target = 0.25, amplitude = 0;
   std::uint64_t seed = 1;
   bool trajectories = true;
   cli.add_option("mesh", mesh_name, "file or built-in")->required();
@@ -115,8 +73,7 @@ int main(int argc, char** argv) {
   cli.add_option("--poses", poses);
   cli.add_option("--amplitude", amplitude);
   cli.add_option("--seed", seed);
-  cli.add_option("--target", target, "largest displacement in the violent scene, as a share of the diagonal");
-  cli.add_option("--tolerance", tolerance);
+  cli.add_option("--target", target, "largest displacement in the violent scenes, as a share of the diagonal");
   cli.add_flag("!--no-trajectories", trajectories);
   CLI11_PARSE(cli, argc, argv);
 
@@ -164,10 +121,10 @@ int main(int argc, char** argv) {
     out["held_out"][std::to_string(share).substr(0, 3)] = error;
 
   const double diagonal = bounding_box(mesh.nodes).diagonal(), omega = std::sqrt(report.exact_eigenvalues[0]);
-  Scene scene{Point(0.5, 0.1, 1).normalized(), 2 * std::numbers::pi / omega / 60};
-  Matrix fitted[2];
-  const double shares[2] = {0.05, target};
-  Point pulls[2];
+  ReducedModel unfitted = model;
+  unfitted.indices.resize(mesh.num_tets());
+  std::iota(unfitted.indices.begin(), unfitted.indices.end(), Index{0});
+  unfitted.weights = Vector::Ones(mesh.num_tets());
   with_reduced_system(model, [&](const auto& system) {
     Random random(7);
     Vector q(system.dim()), f(system.dim());
@@ -179,40 +136,27 @@ int main(int argc, char** argv) {
     if (!std::isfinite(energies)) throw SolverError("the energy is not finite");
     out["tangent_us"] = microseconds([&] { system.stiffness(q, K); });
     if (!trajectories) return;
-    // the pull whose suddenly applied linear response would reach the target, about twice the static one
-    const Matrix shifted =
-        system.rest_stiffness() + 1e-6 * omega * omega * Matrix::Identity(system.dim(), system.dim());
-    const Vector q_static = shifted.llt().solve(system.project({.gravity = scene.pull}).force);
-    for (int k = 0; k < 2; ++k) {
-      pulls[k] = scene.pull * (shares[k] * diagonal / (1.5 * largest_displacement(model, q_static)));
-      const Scene pulled{pulls[k], scene.step, scene.steps};
-      const char* name = k == 0 ? "moderate" : "violent";
-      Run newton = simulate(system, pulled, NonlinearSolver::Newton, tolerance);
-      const Run broyden = simulate(system, pulled, NonlinearSolver::Broyden, tolerance);
-      double reached = 0;
-      for (Index j = 0; j < newton.trajectory.cols(); ++j)
-        reached = std::max(reached, largest_displacement(model, newton.trajectory.col(j)) / diagonal);
-      out[name] = {{"newton", newton.numbers},
-                   {"broyden", broyden.numbers},
-                   {"largest_displacement", reached},
-                   {"newton_against_broyden",
-                    (newton.trajectory - broyden.trajectory).norm() / newton.trajectory.norm()}};
-      fitted[k] = std::move(newton.trajectory);
+    const PullTest pulls({{.name = "moderate", .target = 0.05},
+                          {.name = "violent", .target = target},
+                          {.name = "violent, ramped", .target = target, .ramp = 60},
+                          {.name = "violent, damped", .target = target, .damping = 0.05}},
+                         omega, diagonal, system);
+    std::vector<PulledMotion> motions;
+    for (std::size_t k = 0; k < pulls.scenes().size(); ++k) {  // one by one, for the times
+      motions.push_back(pulls.move(system, k));
+      const PulledMotion newton = pulls.move(system, k, NonlinearSolver::Newton);
+      out[pulls.scenes()[k].name] = {{"broyden", numbers(motions[k])},
+                                     {"newton", numbers(newton)},
+                                     {"newton_against_broyden", deviation(newton, motions[k])},
+                                     {"largest_displacement", pulls.reach(system, motions[k].q)}};
     }
-  });
-  if (trajectories) {
-    ReducedModel unfitted = model;
-    unfitted.indices.resize(mesh.num_tets());
-    std::iota(unfitted.indices.begin(), unfitted.indices.end(), Index{0});
-    unfitted.weights = Vector::Ones(mesh.num_tets());
-    with_reduced_system(unfitted, [&](const auto& system) {
-      for (int k = 0; k < 2; ++k) {
-        const Run exact =
-            simulate(system, {pulls[k], scene.step, scene.steps}, NonlinearSolver::Broyden, tolerance);
-        out[k == 0 ? "moderate" : "violent"]["deviation_from_unfitted"] =
-            (fitted[k] - exact.trajectory).norm() / exact.trajectory.norm();
+    with_reduced_system(unfitted, [&](const auto& exact) {
+      if constexpr (std::is_same_v<decltype(exact), decltype(system)>) {
+        const std::vector<PulledMotion> references = pulls.move(exact);
+        for (std::size_t k = 0; k < references.size(); ++k)
+          out[pulls.scenes()[k].name]["deviation_from_unfitted"] = deviation(motions[k], references[k]);
       }
     });
-  }
+  });
   std::cout << out.dump(1) << '\n';
 }

@@ -1,0 +1,180 @@
+#pragma once
+/// \file The stages that reduce() and SelectionStudy share: from a solid to the fitting problems of its forces.
+
+#include <core/stopwatch.hpp>
+#include <physics/full_system.hpp>
+#include <reduction/modal_basis.hpp>
+#include <reduction/reduce.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace supple {
+
+/// Runs named stages, tells of them and notes their times.
+class Stages {
+ public:
+  Stages(ReduceReport& report, const Progress& progress) : report_(report), progress_(progress) {}
+
+  template <typename Work>
+  decltype(auto) operator()(const std::string& name, Work&& work) {
+    struct Finish {
+      Stages& stages;
+      const std::string& name;
+      Stopwatch watch;
+      ~Finish() { stages.report_.seconds.emplace_back(name, watch.seconds()); }
+    } finish{*this, name, {}};
+    tell(progress_, name, 0);
+    return work([this, &name](double share) { tell(progress_, name, share); });
+  }
+
+  ReduceReport& report() { return report_; }
+  const Progress& progress() const { return progress_; }
+
+ private:
+  ReduceReport& report_;
+  const Progress& progress_;
+};
+
+/// What a selection is made for, and what it is judged by.
+template <ForceModel AnyModel, Subspace S>
+struct Training {
+  using Model = AnyModel;
+  using Fitting = ForceFitting<Model, S>;
+
+  std::shared_ptr<const FullSystem<Model>> system;
+  std::shared_ptr<const S> subspace;
+  Matrix rest_stiffness;  ///< UᵀK(0)U, d × d
+  ReducedModes modes;
+  Fitting fitting;                                    ///< on the training poses
+  std::vector<std::pair<double, Fitting>> held_out;  ///< on fresh poses at these shares of the largest amplitude
+
+  /// The reduced system of a selection.
+  ReducedSystem<Model, S> reduced_system(std::span<const Index> indices, VectorIn weights) const {
+    return {system->shared_model(), subspace, indices, weights, rest_stiffness, system->nodal_mass()};
+  }
+  /// Softest flexible eigenvalues of a reduced stiffness at rest, at most `count` [1/s²].
+  Vector softest_eigenvalues(const Matrix& stiffness, Index count = 5) const;
+};
+
+/// Poses as the options have them: d × T as they are, 3n × T displacements projected by the mass.
+template <Subspace S>
+Matrix poses_in_subspace(const S& subspace, const Vector& nodal_mass, const Matrix& given) {
+  if (given.rows() == subspace.dim()) return given;
+  require_size("given_poses.rows()", given.rows(), subspace.full_dim());
+  Matrix Q(subspace.dim(), given.cols());
+  for (Index t = 0; t < given.cols(); ++t) {
+    Vector u = given.col(t);
+    for (Index v = 0; v < nodal_mass.size(); ++v) u.segment<3>(3 * v) *= nodal_mass[v];
+    Q.col(t) = subspace.project(u);
+  }
+  return Q;
+}
+
+Vector softest_eigenvalues(const Matrix& stiffness, Index first, Index count);
+
+template <ForceModel Model, Subspace S>
+Vector Training<Model, S>::softest_eigenvalues(const Matrix& stiffness, Index count) const {
+  return supple::softest_eigenvalues(stiffness, modes.num_zero, count);
+}
+
+template <ForceModel Model, Subspace S>
+Training<Model, S> train(const Solid& solid, std::shared_ptr<const FullSystem<Model>> system,
+                         std::shared_ptr<const S> subspace, const ReduceOptions& options, Stages& stage) {
+  using Fitting = ForceFitting<Model, S>;
+  ReduceReport& report = stage.report();
+  report.dimension = subspace->dim();
+  report.omega = subspace->report.omega;
+  report.rigid_modes = subspace->report.rigid_modes;
+  report.dropped = subspace->report.dropped;
+  report.notes.insert(report.notes.end(), subspace->report.notes.begin(), subspace->report.notes.end());
+
+  const double total_mass = system->nodal_mass().sum(), diagonal = bounding_box(solid.mesh.nodes).diagonal();
+  Matrix rest_stiffness;
+  ReducedModes modes = stage("reduced stiffness", [&](auto) {
+    rest_stiffness = project_stiffness(*subspace, *system);
+    return reduced_modes(rest_stiffness, subspace->report.known_rigid_modes());
+  });
+  PoseOptions pose_options = options.poses;
+  pose_options.seed += 1000003 * options.seed;  // the seed of a run moves all random choices
+  const auto sample = [&](const PoseOptions& some) {
+    return sample_poses(system->shared_model(), *subspace, modes, total_mass, diagonal, some);
+  };
+  const Matrix Q = stage("training poses", [&](auto) -> Matrix {
+    if (options.given_poses.size() > 0)
+      return poses_in_subspace(*subspace, system->nodal_mass(), options.given_poses);
+    TrainingPoses poses = sample(pose_options);
+    report.inverted_poses = poses.inverted;
+    report.redrawn_poses = poses.redrawn;
+    report.shrunk_poses = poses.shrunk;
+    if (poses.inverted > 0)
+      report.notes.push_back(std::to_string(poses.inverted) + " of " + std::to_string(pose_options.count) +
+                             " training poses had inverted tets (" +
+                             std::to_string(poses.inverted_components) + " in all); " +
+                             std::to_string(poses.redrawn) + " draws were redrawn, " +
+                             std::to_string(poses.shrunk) + " poses shrunk");
+    return std::move(poses.Q);
+  });
+  report.poses = Q.cols();
+  const Matrix metric = force_metric(options.norm, modes);
+  Fitting fitting = stage("training forces", [&](auto share) {
+    return Fitting(system->shared_model(), subspace, metric, Q, share);
+  });
+  std::vector<std::pair<double, Fitting>> held_out;
+  if (options.held_out_poses > 0)
+    stage("held-out forces", [&](auto share) {
+      const double largest =
+          *std::max_element(pose_options.amplitudes.begin(), pose_options.amplitudes.end());
+      for (const double part : {1.0, 0.3, 0.1}) {
+        PoseOptions some = pose_options;
+        some.count = options.held_out_poses;
+        some.amplitudes = {part * largest};
+        some.seed = pose_options.seed + 7919;
+        held_out.emplace_back(part, Fitting(system->shared_model(), subspace, metric, sample(some).Q));
+        share(static_cast<double>(held_out.size()) / 3);
+      }
+    });
+  return {std::move(system), std::move(subspace), std::move(rest_stiffness),
+          std::move(modes),  std::move(fitting),  std::move(held_out)};
+}
+
+/// Calls visit(training) with the Training of the solid's law and the subspace that the options name.
+template <typename Visitor>
+void with_training(const Solid& solid, const ReduceOptions& options, Stages& stage, Visitor&& visit) {
+  ReduceReport& report = stage.report();
+  report.nodes = solid.mesh.num_nodes();
+  report.tets = solid.mesh.num_tets();
+  report.fixed_nodes = static_cast<Index>(solid.fixed_nodes.size());
+  with_law(solid.law, [&]<template <typename> class Material>() {
+    using Model = TetElasticity<Material>;
+    ReduceOptions used = options;
+    if (solid.law == "mooney-rivlin" && used.poses.inverted == InvertedPoses::Keep)
+      used.poses.inverted = InvertedPoses::Shrink;
+    const auto system = stage("full system", [&](auto) {
+      return std::make_shared<const FullSystem<Model>>(make_model<Material>(solid), solid.nodal_mass(),
+                                                       solid.fixed_nodes);
+    });
+    const VibrationModes modes = stage("vibration modes", [&](auto) {
+      return vibration_modes(*system, {.num_modes = options.modes,
+                                       .tolerance = 1e-8,
+                                       .seed = options.seed,
+                                       .progress = stage.progress()});
+    });
+    if (options.subspace == "extended") {
+      auto subspace = stage("subspace", [&](auto) {
+        return std::make_shared<const NodalBasis>(
+            extend_modes(modes, solid.mesh.nodes, system->nodal_mass()));
+      });
+      visit(train<Model, NodalBasis>(solid, system, std::move(subspace), used, stage));
+    } else {
+      auto subspace = std::make_shared<const DenseBasis>(
+          DenseBasis{modes.vectors, {modes.omega, modes.residuals, modes.num_rigid, 0, modes.notes}});
+      visit(train<Model, DenseBasis>(solid, system, std::move(subspace), used, stage));
+    }
+  });
+}
+
+/// \throws std::invalid_argument for options out of range.
+void check(const ReduceOptions& options);
+
+}  // namespace supple
