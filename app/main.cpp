@@ -2,6 +2,7 @@
 #include <app/exit_guard.hpp>
 #include <app/info_command.hpp>
 #include <app/reduce_command.hpp>
+#include <app/select_command.hpp>
 #include <app/simulate_command.hpp>
 #include <app/terminal.hpp>
 #include <core/check.hpp>
@@ -192,6 +193,80 @@ CLI::App& add_compare(CLI::App& app, CompareCommand& c) {
   return compare;
 }
 
+CLI::App& add_select(CLI::App& app, SelectCommand& c) {
+  CLI::App& select =
+      *app.add_subcommand("select", "Choose few columns of a matrix A, with weights w: A w ~ b");
+  const auto problem = "Problem";
+  select.add_option("--matrix", c.matrix, "A: NumPy .npy or Matrix Market .mtx")
+      ->required()
+      ->type_name("FILE")
+      ->group(problem);
+  select
+      .add_option("--rhs", c.rhs,
+                  "b, likewise; without: b = A 1, the sum of all columns, as cubature fits it")
+      ->type_name("FILE")
+      ->group(problem);
+  CLI::Option& held_out =
+      *select
+           .add_option("--validate-matrix", c.validate_matrix, "Held-out rows of A, to measure the error on")
+           ->type_name("FILE")
+           ->group(problem);
+  select.add_option("--validate-rhs", c.validate_rhs, "Their b; without: their A 1, if there is no --rhs")
+      ->needs(&held_out)
+      ->type_name("FILE")
+      ->group(problem);
+  select
+      .add_option("--group-size", c.group_size,
+                  "Rows of a training pose, for --train-groups: they stand or fall together")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->group(problem);
+
+  const auto method = "Method";
+  select.add_option("--points", c.points, "Largest number of columns; may be left out with --target-error")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber)
+      ->group(method);
+  select
+      .add_option("--target-error", c.target_error, "Take as few columns as reach |A w - b| / |b| <= SHARE")
+      ->type_name("SHARE")
+      ->check(CLI::PositiveNumber)
+      ->group(method);
+  c.selector = known_selectors().front();
+  select.add_option("--selector", c.selector, "How they are chosen; htp and niht give weights of any sign")
+      ->capture_default_str()
+      ->check(CLI::IsMember(known_selectors()))
+      ->group(method);
+  select
+      .add_option("--candidates", c.candidates,
+                  "Columns that may be chosen beside --must-keep, one index a line, from 0 [all]")
+      ->type_name("FILE")
+      ->group(method);
+  select.add_option("--must-keep", c.must_keep, "Columns that are in the answer, if need be with weight 0")
+      ->type_name("FILE")
+      ->group(method);
+  select
+      .add_option("--warm-start", c.warm_start, "Earlier report to improve: its indices and positive weights")
+      ->type_name("FILE.json")
+      ->group(method);
+  select
+      .add_option("--train-groups", c.train_groups,
+                  "Groups of --group-size rows that 'greedy' compares columns on, anew in each step [all]")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->group(method);
+  select.add_option("--seed", c.seed, "Of all random choices")->capture_default_str()->group(method);
+  add_json(select, c.json);
+  add_threads(select, c.threads);
+  select.footer(
+      "The indices and weights are in the report of --json. Weights are not negative, but for htp and niht.\n"
+      "\nExamples:\n"
+      "supple select --matrix A.npy --rhs b.npy --points 200 --json -\n"
+      "supple select --matrix A.mtx --target-error 0.01 --json selection.json");
+  return select;
+}
+
 CLI::App& add_info(CLI::App& app, InfoCommand& c) {
   CLI::App& info = *app.add_subcommand("info", "Say what a model or a mesh holds");
   info.add_option("SOURCE", c.source, "Model, mesh file or built-in mesh")->required();
@@ -254,11 +329,13 @@ int run(int argc, char** argv) {
   ReduceCommand reduce;
   SimulateCommand simulate;
   CompareCommand compare;
+  SelectCommand select;
   InfoCommand info;
   MeshCommand mesh;
   add_reduce(app, reduce).callback([&] { reduce.run(); });
   add_simulate(app, simulate).callback([&] { simulate.run(); });
   add_compare(app, compare).callback([&] { compare.run(); });
+  add_select(app, select).callback([&] { select.run(); });
   add_info(app, info).callback([&] { info.run(); });
   add_mesh(app, mesh).callback([&] { mesh.run(); });
   try {

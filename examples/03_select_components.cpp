@@ -1,5 +1,6 @@
 // I have a matrix and a vector, and want few columns: min ‖A w − b‖, w ≥ 0, at most s weights. No mesh
-// involved.
+// involved. From files: A = read_matrix("A.npy"), b = read_vector("b.npy") of <io/matrix_file.hpp>, or the
+// command 'supple select'.
 //
 // Sample run:
 //   40 of 500 columns, error 2.7e-01 (random: 6.3e-01)

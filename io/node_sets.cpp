@@ -1,8 +1,8 @@
 #include <core/check.hpp>
-#include <io/cursor.hpp>
+#include <io/index_file.hpp>
 #include <io/node_sets.hpp>
 
-#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -117,20 +117,7 @@ std::vector<Index> nodes_of_region(const TetMesh& mesh, std::string_view region)
 }
 
 std::vector<Index> read_node_set(const TetMesh& mesh, const std::filesystem::path& path) {
-  const std::string bytes = read_bytes(path);
-  Cursor in(path.string(), bytes, {.separator = '\0', .comment = '#'});
-  std::vector<Index> nodes;
-  while (!in.peek().empty()) {
-    const std::int64_t node = in.integer("a node index");
-    if (node < 0 || node >= mesh.num_nodes())
-      in.fail("node " + std::to_string(node) + " does not exist: indices are 0 … " +
-              std::to_string(mesh.num_nodes() - 1));
-    nodes.push_back(node);
-  }
-  if (nodes.empty()) throw InputError(path.string() + ": names no node, expected one index a line");
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
+  return read_indices(path, "node", mesh.num_nodes());
 }
 
 }  // namespace supple

@@ -12,3 +12,4 @@ supple_test(io_meshes LABEL unit LINKS supple::io ZLIB::ZLIB
 target_compile_definitions(test_io_meshes PRIVATE SUPPLE_SHARED_MESHES="${PROJECT_SOURCE_DIR}/../shared/meshes")
 supple_test(io_mesh_fuzz LABEL unit LINKS supple::io ZLIB::ZLIB
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/mesh_files.cpp ${CMAKE_CURRENT_LIST_DIR}/mesh_fuzz_test.cpp)
+supple_test(io_matrices LABEL unit LINKS supple::io SOURCES ${CMAKE_CURRENT_LIST_DIR}/matrix_file_test.cpp)
