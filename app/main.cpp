@@ -1,4 +1,5 @@
 #include <app/compare_command.hpp>
+#include <app/compare_selectors_command.hpp>
 #include <app/exit_guard.hpp>
 #include <app/info_command.hpp>
 #include <app/reduce_command.hpp>
@@ -31,12 +32,91 @@ void add_threads(CLI::App& app, int& threads) {
       ->check(CLI::Range(0, 4096));
 }
 
+/// The object and the method of training, for all commands that pose a fitting problem.
+void add_problem(CLI::App& command, ProblemOptions& c) {
+  command
+      .add_option("MESH", c.mesh, "Mesh file (.msh .mesh .node .ele .veg .vtk .vtu) or built-in, see below")
+      ->required();
+  const auto object = "Object";
+  command.add_option("--material", c.law, "Law: stvk or mooney-rivlin")
+      ->capture_default_str()
+      ->check(CLI::IsMember(material_laws()))
+      ->group(object);
+  command.add_option("--young", c.young, "Young's modulus [Pa], or with a unit: '2 MPa'")
+      ->capture_default_str()
+      ->group(object);
+  command.add_option("--poisson", c.poisson, "Poisson's ratio")->capture_default_str()->group(object);
+  command.add_option("--density", c.density, "Density [kg/m^3]")->capture_default_str()->group(object);
+  command
+      .add_option("--materials", c.materials,
+                  "Other values for regions: {\"regions\": {\"bone\": {\"young\": \"1 MPa\"}}}")
+      ->type_name("FILE.json")
+      ->group(object);
+  command.add_option("--damping-alpha", c.damping_alpha, "Rayleigh damping, share of the mass [1/s]")
+      ->capture_default_str()
+      ->group(object);
+  command.add_option("--damping-beta", c.damping_beta, "Rayleigh damping, share of the stiffness [s]")
+      ->capture_default_str()
+      ->group(object);
+  const auto each = [&](auto& values, const char* name, const char* type, const char* help) {
+    command.add_option(name, values, help)->type_name(type)->expected(1)->take_all()->group(object);
+  };
+  each(c.fix, "--fix", "RULE",
+       "Hold nodes, e.g. 'y<4%' (of the bounding box) or 'x>=0.25' [m]; may be repeated");
+  each(c.fix_box, "--fix-box", "BOX", "Hold the nodes in a box x,y,z:x,y,z [m]; may be repeated");
+  each(c.fix_file, "--fix-file", "FILE", "Hold the nodes that a file lists, one index a line, from 0");
+  each(c.fix_region, "--fix-region", "TAG", "Hold the nodes of a region, by name or number");
+
+  const auto method = "Method";
+  command.add_option("--recipe", c.recipe, "Where unset options come from: default, or paper")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"default", "paper"}))
+      ->group(method);
+  command
+      .add_option("--subspace", c.subspace, "extended (modes under all linear maps) or modal (modes alone)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"extended", "modal"}))
+      ->group(method);
+  command.add_option("--modes", c.modes, "Vibration modes, rigid ones included [15]")
+      ->type_name("R")
+      ->group(method);
+  command.add_option("--poses", c.poses, "Training poses [300; paper: 1000]")->type_name("T")->group(method);
+  command
+      .add_option("--amplitude", c.amplitudes,
+                  "Rms displacement of a pose as a share of the diagonal; repeat for a mix [0.05, 0.017, "
+                  "0.005; paper: 0.07]")
+      ->type_name("SHARE")
+      ->expected(1)
+      ->take_all()
+      ->group(method);
+  command
+      .add_option("--omega-exponent", c.omega_exponent,
+                  "Poses have deviations ~ 1/omega^E in each mode [2; paper: 1]")
+      ->type_name("E")
+      ->group(method);
+  command.add_option("--norm", c.norm, "Measure of the fitted forces [stiffness; paper: mass]")
+      ->check(CLI::IsMember({"mass", "stiffness"}))
+      ->group(method);
+  command.add_option("--inverted", c.inverted, "Poses with inverted tets [keep; mooney-rivlin: shrink]")
+      ->check(CLI::IsMember({"keep", "shrink", "redraw"}))
+      ->group(method);
+  command
+      .add_option("--poses-file", c.poses_file,
+                  "Poses instead of random ones: .npy, tensor file or trajectory")
+      ->type_name("FILE")
+      ->group(method);
+  command
+      .add_option("--held-out", c.held_out,
+                  "Fresh poses to measure the error on, at each of three amplitudes; 0: none [100]")
+      ->type_name("N")
+      ->group(method);
+  command.add_option("--seed", c.seed, "Of all random choices")->capture_default_str()->group(method);
+}
+
 CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
   CLI::App& reduce = *app.add_subcommand("reduce", "Make a reduced model of a mesh");
   const auto files = "Output";
-  reduce
-      .add_option("MESH", c.mesh, "Mesh file (.msh .mesh .node .ele .veg .vtk .vtu) or built-in, see below")
-      ->required();
+  add_problem(reduce, c);
   reduce.add_option("-o,--output", c.model, "The model's file")->required()->type_name("MODEL")->group(files);
   add_json(reduce, c.json);
   reduce.get_option("--json")->group(files);
@@ -47,49 +127,7 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
       ->type_name("DIR")
       ->group(files);
 
-  const auto object = "Object";
-  reduce.add_option("--material", c.law, "Law: stvk or mooney-rivlin")
-      ->capture_default_str()
-      ->check(CLI::IsMember(material_laws()))
-      ->group(object);
-  reduce.add_option("--young", c.young, "Young's modulus [Pa], or with a unit: '2 MPa'")
-      ->capture_default_str()
-      ->group(object);
-  reduce.add_option("--poisson", c.poisson, "Poisson's ratio")->capture_default_str()->group(object);
-  reduce.add_option("--density", c.density, "Density [kg/m^3]")->capture_default_str()->group(object);
-  reduce
-      .add_option("--materials", c.materials,
-                  "Other values for regions: {\"regions\": {\"bone\": {\"young\": \"1 MPa\"}}}")
-      ->type_name("FILE.json")
-      ->group(object);
-  reduce.add_option("--damping-alpha", c.damping_alpha, "Rayleigh damping, share of the mass [1/s]")
-      ->capture_default_str()
-      ->group(object);
-  reduce.add_option("--damping-beta", c.damping_beta, "Rayleigh damping, share of the stiffness [s]")
-      ->capture_default_str()
-      ->group(object);
-  const auto each = [&](auto& values, const char* name, const char* type, const char* help) {
-    reduce.add_option(name, values, help)->type_name(type)->expected(1)->take_all()->group(object);
-  };
-  each(c.fix, "--fix", "RULE",
-       "Hold nodes, e.g. 'y<4%' (of the bounding box) or 'x>=0.25' [m]; may be repeated");
-  each(c.fix_box, "--fix-box", "BOX", "Hold the nodes in a box x,y,z:x,y,z [m]; may be repeated");
-  each(c.fix_file, "--fix-file", "FILE", "Hold the nodes that a file lists, one index a line, from 0");
-  each(c.fix_region, "--fix-region", "TAG", "Hold the nodes of a region, by name or number");
-
   const auto method = "Method";
-  reduce.add_option("--recipe", c.recipe, "Where unset options come from: default, or paper")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"default", "paper"}))
-      ->group(method);
-  reduce
-      .add_option("--subspace", c.subspace, "extended (modes under all linear maps) or modal (modes alone)")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"extended", "modal"}))
-      ->group(method);
-  reduce.add_option("--modes", c.modes, "Vibration modes, rigid ones included [15]")
-      ->type_name("R")
-      ->group(method);
   reduce.add_option("--points", c.points, "Largest number of tets that stand for all [150; 1000 with --target-error]")
       ->type_name("S")
       ->group(method);
@@ -99,37 +137,6 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
   reduce.add_option("--selector", c.selector, "How they are chosen")
       ->check(CLI::IsMember(known_selectors()))
       ->group(method);
-  reduce.add_option("--poses", c.poses, "Training poses [300; paper: 1000]")->type_name("T")->group(method);
-  reduce
-      .add_option("--amplitude", c.amplitudes,
-                  "Rms displacement of a pose as a share of the diagonal; repeat for a mix [0.05, 0.017, "
-                  "0.005; paper: 0.065]")
-      ->type_name("SHARE")
-      ->expected(1)
-      ->take_all()
-      ->group(method);
-  reduce
-      .add_option("--omega-exponent", c.omega_exponent,
-                  "Poses have deviations ~ 1/omega^E in each mode [2; paper: 1]")
-      ->type_name("E")
-      ->group(method);
-  reduce.add_option("--norm", c.norm, "Measure of the fitted forces [stiffness; paper: mass]")
-      ->check(CLI::IsMember({"mass", "stiffness"}))
-      ->group(method);
-  reduce.add_option("--inverted", c.inverted, "Poses with inverted tets [keep; mooney-rivlin: shrink]")
-      ->check(CLI::IsMember({"keep", "shrink", "redraw"}))
-      ->group(method);
-  reduce
-      .add_option("--poses-file", c.poses_file,
-                  "Poses instead of random ones: .npy, tensor file or trajectory")
-      ->type_name("FILE")
-      ->group(method);
-  reduce
-      .add_option("--held-out", c.held_out,
-                  "Fresh poses to measure the error on, at each of three amplitudes; 0: none [100]")
-      ->type_name("N")
-      ->group(method);
-  reduce.add_option("--seed", c.seed, "Of all random choices")->capture_default_str()->group(method);
   add_threads(reduce, c.threads);
   reduce.footer("Built-in meshes:\n" + std::string(builtin_mesh_help) +
                 "\nExamples:\n"
@@ -190,6 +197,40 @@ CLI::App& add_compare(CLI::App& app, CompareCommand& c) {
       "over\n"
       "nodes (by mass) and frames, relative to the reference.\n"
       "\nExample:\nsupple compare run full -o comparison");
+  return compare;
+}
+
+CLI::App& add_compare_selectors(CLI::App& app, CompareSelectorsCommand& c) {
+  CLI::App& compare =
+      *app.add_subcommand("compare-selectors", "Run selectors over sizes and seeds on one fitting problem");
+  add_problem(compare, c);
+  const auto comparison = "Comparison";
+  compare.add_option("--selectors", c.selectors, "Names, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->check(CLI::IsMember(known_selectors()))
+      ->group(comparison);
+  compare.add_option("--sizes", c.sizes, "Numbers of tets, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->group(comparison);
+  compare.add_option("--runs", c.runs, "Seeds for each selector and size")
+      ->capture_default_str()
+      ->type_name("N")
+      ->group(comparison);
+  compare
+      .add_flag("--trajectories", c.trajectories,
+                "Compare pulled motions, too; their reference evaluates every tet, which takes a minute")
+      ->group(comparison);
+  compare
+      .add_option("-o,--output", c.output, "Folder for runs.csv, table.md, plots and the page index.html")
+      ->type_name("DIR");
+  add_json(compare, c.json);
+  add_threads(compare, c.threads);
+  compare.footer(
+      "Example:\n"
+      "supple compare-selectors dragon.msh --fix 'y<4%' --selectors nn-sp,nn-htp,greedy --sizes 50,100,150 -o "
+      "comparison");
   return compare;
 }
 
@@ -329,12 +370,14 @@ int run(int argc, char** argv) {
   ReduceCommand reduce;
   SimulateCommand simulate;
   CompareCommand compare;
+  CompareSelectorsCommand compare_selectors;
   SelectCommand select;
   InfoCommand info;
   MeshCommand mesh;
   add_reduce(app, reduce).callback([&] { reduce.run(); });
   add_simulate(app, simulate).callback([&] { simulate.run(); });
   add_compare(app, compare).callback([&] { compare.run(); });
+  add_compare_selectors(app, compare_selectors).callback([&] { compare_selectors.run(); });
   add_select(app, select).callback([&] { select.run(); });
   add_info(app, info).callback([&] { info.run(); });
   add_mesh(app, mesh).callback([&] { mesh.run(); });

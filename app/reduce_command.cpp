@@ -1,149 +1,39 @@
 #include <app/exit_guard.hpp>
 #include <app/json_report.hpp>
 #include <app/mesh_source.hpp>
-#include <app/pose_file.hpp>
 #include <app/reduce_command.hpp>
 #include <app/surface.hpp>
 #include <app/terminal.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
-#include <io/json_fields.hpp>
-#include <io/node_sets.hpp>
 #include <io/plot.hpp>
-#include <reduction/reduce.hpp>
 
 #include <algorithm>
 #include <numbers>
-#include <set>
 
 namespace supple {
 
 namespace {
 
-std::vector<Index> fixed_nodes(const ReduceCommand& command, const TetMesh& mesh) {
-  std::set<Index> nodes;
-  const auto fix = [&](const std::vector<Index>& some) { nodes.insert(some.begin(), some.end()); };
-  for (const std::string& rule : command.fix) fix(select_nodes(mesh, rule));
-  for (const std::string& box : command.fix_box) fix(nodes_in_box(mesh, box));
-  for (const std::string& region : command.fix_region) fix(nodes_of_region(mesh, region));
-  for (const std::filesystem::path& file : command.fix_file) fix(read_node_set(mesh, file));
-  return {nodes.begin(), nodes.end()};
-}
-
-struct Material {
-  IsotropicModuli moduli;
-  double density = 0;
-};
-
-/// One material for the object, and others for the regions that the file of --materials names.
-void set_materials(const ReduceCommand& command, Solid& solid) {
-  const Material base{
-      {option_quantity("--young", command.young, "Pa"), option_quantity("--poisson", command.poisson, "1")},
-      option_quantity("--density", command.density, "kg/m^3")};
-  std::vector<Material> materials{base};
-  const TetMesh& mesh = solid.mesh;
-  if (command.materials) {
-    if (mesh.region.empty())
-      throw InputError(command.materials->string() +
-                       ": the mesh has no regions, so there is nothing to tell apart");
-    const JsonFields file = JsonFields::read(*command.materials), regions = file.object("regions");
-    std::map<int, std::int32_t> material_of_region;
-    for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end())) {
-      material_of_region[tag] = 0;
-      const auto name = mesh.region_names.find(tag);
-      for (const std::string& key :
-           {name == mesh.region_names.end() ? "" : name->second, std::to_string(tag)})
-        if (!key.empty() && regions.contains(key)) {
-          const JsonFields fields = regions.object(key);
-          material_of_region[tag] = static_cast<std::int32_t>(materials.size());
-          materials.push_back({{fields.number_or("young", base.moduli.young, positive, "Pa"),
-                                fields.number_or("poisson", base.moduli.poisson, between(-1, 0.5))},
-                               fields.number_or("density", base.density, positive, "kg/m^3")});
-          break;
-        }
-    }
-    file.finish();
-    for (const int tag : mesh.region) solid.material_of_tet.push_back(material_of_region[tag]);
-    solid.density.resize(mesh.num_tets());
-    for (Index e = 0; e < mesh.num_tets(); ++e)
-      solid.density[e] = materials[solid.material_of_tet[e]].density;
-  } else {
-    solid.density = Vector::Constant(1, base.density);
-  }
-  solid.law = command.law;
-  for (std::size_t k = 0; k < materials.size(); ++k) {
-    const std::vector<double> row = law_parameters(command.law, materials[k].moduli);
-    solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
-    for (std::size_t j = 0; j < row.size(); ++j) solid.parameters(k, j) = row[j];
-  }
-}
-
-InvertedPoses inverted_poses(const std::string& word) {
-  return word == "keep"     ? InvertedPoses::Keep
-         : word == "shrink" ? InvertedPoses::Shrink
-                            : InvertedPoses::Redraw;
-}
-
 constexpr Index largest_search = 1000;  // points, if only a target error is given
 
-ReduceOptions reduce_options(const ReduceCommand& command) {
-  ReduceOptions options = command.recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
-  options.subspace = command.subspace;
-  options.seed = command.seed;
-  if (command.modes) options.modes = *command.modes;
-  if (command.poses) options.poses.count = *command.poses;
-  if (command.held_out) options.held_out_poses = *command.held_out;
+ReduceOptions method(const ReduceCommand& command) {
+  ReduceOptions options = reduce_options(command);
   if (command.target_error) {
     options.target_error = *command.target_error;
     options.points = largest_search;
   }
   if (command.points) options.points = *command.points;
-  if (command.omega_exponent) options.poses.omega_exponent = *command.omega_exponent;
-  if (!command.amplitudes.empty()) options.poses.amplitudes = command.amplitudes;
   if (command.selector) options.selector = *command.selector;
-  if (command.norm) options.norm = *command.norm == "mass" ? ForceNorm::Mass : ForceNorm::Stiffness;
-  if (command.inverted) options.poses.inverted = inverted_poses(*command.inverted);
-  if (command.poses_file) options.given_poses = read_poses(*command.poses_file);
   return options;
-}
-
-const char* to_text(ForceNorm norm) {
-  return norm == ForceNorm::Mass ? "mass" : "stiffness";
-}
-const char* to_text(InvertedPoses rule) {
-  return rule == InvertedPoses::Keep ? "keep" : rule == InvertedPoses::Shrink ? "shrink" : "redraw";
 }
 
 /// What made the model, and nothing that differs between two runs of the same job.
 Json options_json(const ReduceCommand& command, const ReduceOptions& options) {
-  Json json{{"recipe", command.recipe},
-            {"subspace", options.subspace},
-            {"modes", options.modes},
-            {"poses", options.poses.count},
-            {"points", options.points},
-            {"target_error", options.target_error},
-            {"selector", options.selector},
-            {"norm", to_text(options.norm)},
-            {"omega_exponent", options.poses.omega_exponent},
-            {"amplitudes", options.poses.amplitudes},
-            {"inverted", to_text(options.poses.inverted)},
-            {"held_out", options.held_out_poses},
-            {"seed", options.seed},
-            {"material", command.law},
-            {"young", command.young},
-            {"poisson", command.poisson},
-            {"density", command.density},
-            {"damping_alpha", command.damping_alpha},
-            {"damping_beta", command.damping_beta},
-            {"fix", command.fix},
-            {"fix_box", command.fix_box},
-            {"fix_region", command.fix_region}};
-  const auto add_files = [&](const char* key, const std::vector<std::filesystem::path>& files) {
-    for (const std::filesystem::path& file : files) json[key].push_back(file.string());
-  };
-  add_files("fix_file", command.fix_file);
-  if (command.materials) json["materials"] = command.materials->string();
-  if (command.poses_file) json["poses_file"] = command.poses_file->string();
+  Json json = problem_json(command, options);
+  json["points"] = options.points;
+  json["target_error"] = options.target_error;
+  json["selector"] = options.selector;
   return json;
 }
 
@@ -290,15 +180,8 @@ void ReduceCommand::run() const {
   Stopwatch watch;
   const NamedMesh named = load_mesh(mesh);
   for (const std::string& warning : named.notes.warnings) warn(mesh + ": " + warning);
-  Solid solid;
-  solid.mesh = named.mesh;
-  solid.fixed_nodes = fixed_nodes(*this, solid.mesh);
-  solid.damping = {option_quantity("--damping-alpha", damping_alpha, "1/s"),
-                   option_quantity("--damping-beta", damping_beta, "s")};
-  if (solid.damping.alpha < 0 || solid.damping.beta < 0)
-    throw InputError("damping is negative, expected 0 or more");
-  set_materials(*this, solid);
-  const ReduceOptions options = reduce_options(*this);
+  const Solid solid = load_solid(*this, named.mesh);
+  const ReduceOptions options = method(*this);
   if (!plots.empty()) make_folder(plots);
   const double read_seconds = watch.seconds();
 

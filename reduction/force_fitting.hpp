@@ -57,8 +57,19 @@ class ForceFitting {
   const Model& model() const { return *model_; }
   const S& subspace() const { return *subspace_; }
 
+  /// L Dⱼᵀ Hⱼ: the metric meets the few rows of U that component j reads, not its forces at all poses.
   void column(Index j, VectorOut out) const {
-    out = columns(std::span<const Index>(&j, 1)).times(Vector::Ones(1));
+    require_size("out", out.size(), rows());
+    const Columns one = columns(std::span<const Index>(&j, 1));
+    const Index d = metric_->rows();
+    Matrix LD(d, local);
+    for (int x = 0; x < block; ++x) {  // every block-th column of L, from x on
+      const Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> L_x(metric_->data() + x * d, d, subspace_->num_fields(),
+                                                                  Eigen::OuterStride<>(block * d));
+      for (int row = 0; row < rows_per_component; ++row)
+        LD.col(row * block + x).noalias() = L_x * one.E_.row(row).transpose();
+    }
+    Eigen::Map<Matrix>(out.data(), LD.rows(), num_poses()).noalias() = LD * one.H_.leftCols(num_poses());
   }
 
   Columns columns(std::span<const Index> js) const { return Columns(*this, js); }
@@ -225,6 +236,8 @@ class ForceFitting {
     }
 
    private:
+    friend class ForceFitting;
+
     explicit Columns(const ForceFitting& fitting) : fitting_(&fitting) {}
 
     void evaluate(Index k, const double* u, Index stride) {

@@ -75,7 +75,7 @@ CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem,
                              const std::vector<Index>& columns);
 
 /// Runs `select` on compressed rows of the eligible columns, then fits the weights of what it chose to all
-/// rows. The history is that of the compressed problem; everything else in the report is exact.
+/// rows. In the history, errors of the compressed problem are NaN: they say nothing about all rows.
 template <typename S, FittingProblem P>
 Selection select_on_rows(const CompressedRows& compressed, const S& select, const P& problem,
                          const SelectionRequest& request, const Stopwatch& since);
@@ -179,6 +179,7 @@ Selection select_on_rows(const CompressedRows& compressed, const S& select, cons
     chosen = select(rows, inner);
     for (SelectionStep step : chosen.report.history) {
       step.seconds += start;
+      step.training_error = std::numeric_limits<double>::quiet_NaN();
       step.columns_evaluated = static_cast<Index>(compressed.columns.size());
       steps.push_back(step);
     }

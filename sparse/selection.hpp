@@ -15,7 +15,7 @@ namespace supple {
 /// One entry of the history of a selection.
 struct SelectionStep {
   Index size = 0;                                                    ///< columns in use
-  double training_error = 1;                                         ///< ‖A w − b‖ / ‖b‖
+  double training_error = 1;                                         ///< ‖A w − b‖ / ‖b‖; NaN: not evaluated
   double held_out_error = std::numeric_limits<double>::quiet_NaN();  ///< NaN if the request has no validation
   double seconds = 0;                                                ///< since the start
   Index columns_evaluated = 0;                                       ///< since the start, repeats counted

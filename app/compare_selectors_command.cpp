@@ -1,0 +1,99 @@
+#include <app/compare_selectors_command.hpp>
+#include <app/exit_guard.hpp>
+#include <app/mesh_source.hpp>
+#include <app/selector_table.hpp>
+#include <app/terminal.hpp>
+#include <core/output_file.hpp>
+#include <core/parallel.hpp>
+#include <core/stopwatch.hpp>
+#include <sparse/selector_library.hpp>
+
+namespace supple {
+
+namespace {
+
+SelectorRun run_selector(const SelectionStudy& study, const std::string& selector, Index size,
+                         std::uint64_t seed, const Progress& progress) {
+  SelectionRequest request(size);
+  request.progress = progress;
+  const Selection selection = select_by_name(selector, study.problem(), request, seed);
+  SelectorRun run{selector, size, seed, 0, selection.report, study.measure(selection)};
+  run.points = static_cast<Index>((selection.weights.array() != 0).count());
+  return run;
+}
+
+std::string description(const CompareSelectorsCommand& command, const ReduceOptions& options,
+                        const SelectionStudy& study) {
+  const ReduceReport& report = study.report();
+  std::string text = shown_count(report.tets) + " tets (" + command.law + "), subspace of dimension " +
+                     std::to_string(report.dimension) + ", " + std::to_string(report.poses) +
+                     " training poses by the " + command.recipe + " recipe, errors in the " +
+                     (options.norm == ForceNorm::Mass ? "mass" : "stiffness") + " norm, " +
+                     std::to_string(command.runs) + (command.runs == 1 ? " seed" : " seeds") + ".";
+  if (!study.scenes().empty()) text += " Pulls reach";
+  for (std::size_t k = 0; k < study.scenes().size(); ++k)
+    text += (k == 0 ? " " : ", ") + shown_percent(study.largest_displacements()[k], 2) + " of the diagonal (" +
+            study.scenes()[k].name + ")";
+  return study.scenes().empty() ? text : text + ".";
+}
+
+}  // namespace
+
+void CompareSelectorsCommand::run() const {
+  set_num_threads(threads);
+  require_writable(json);
+  if (runs < 1) throw InputError("--runs is " + std::to_string(runs) + ", expected at least 1");
+  const Stopwatch total;
+  const NamedMesh named = load_mesh(mesh);
+  for (const std::string& warning : named.notes.warnings) warn(mesh + ": " + warning);
+  const Solid solid = load_solid(*this, named.mesh);
+  for (const Index size : sizes)
+    if (size < 1 || size > solid.mesh.num_tets())
+      throw InputError("--sizes holds " + std::to_string(size) + ", expected 1 to the number of tets, " +
+                       std::to_string(solid.mesh.num_tets()));
+  if (!output.empty()) make_folder(output);
+  const ReduceOptions options = reduce_options(*this);
+  std::vector<PullScene> scenes;
+  if (trajectories)
+    scenes = {{.name = "pull"}, {.name = "ramped pull", .ramp = 60}, {.name = "damped pull", .damping = 0.05}};
+  const SelectionStudy study(solid, options, std::move(scenes), progress_bar());
+  for (const std::string& note : study.report().notes) warn(note);
+
+  std::vector<SelectorRun> results;
+  for (const std::string& selector : selectors)
+    for (const Index size : sizes)
+      for (Index k = 0; k < runs; ++k)
+        results.push_back(run_selector(study, selector, size, seed + static_cast<std::uint64_t>(k), progress_bar()));
+  clear_progress();
+
+  const std::vector<SelectorSummary> summaries = summarize(results);
+  const std::string table = markdown_table(summaries, study.scenes()), title = "Selectors on " + mesh,
+                    text = description(*this, options, study);
+  if (!output.empty()) {
+    write_runs(output / "runs.csv", results, study.scenes());
+    {
+      const ExitGuard guard;
+      write_file(output / "table.md", "# " + title + "\n\n" + text + "\n\n" + table);
+    }
+    write_selector_page(output, title, text, summaries, study.scenes(),
+                        draw_selector_plots(output, results, study.scenes()));
+  }
+  Json report;
+  report["command"] = "compare-selectors";
+  report["version"] = SUPPLE_VERSION;
+  report["mesh"] = mesh;
+  report["description"] = text;
+  report["options"] = problem_json(*this, options);
+  Json scene_list = Json::array();
+  for (std::size_t k = 0; k < study.scenes().size(); ++k)
+    scene_list.push_back(
+        {{"name", study.scenes()[k].name}, {"largest_displacement", study.largest_displacements()[k]}});
+  report["scenes"] = std::move(scene_list);
+  report["runs"] = runs_json(results);
+  report["seconds"] = json_seconds(study.report().seconds, total.seconds());
+  report["peak_memory"] = peak_resident_memory();
+  if (!is_stdout(json)) std::fputs((title + "\n" + text + "\n\n" + table).c_str(), stdout);
+  write_json(json, report);
+}
+
+}  // namespace supple

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <app/problem_options.hpp>
+
+namespace supple {
+
+/// `supple compare-selectors`.
+struct CompareSelectorsCommand : ProblemOptions {
+  std::vector<std::string> selectors{"nn-sp", "nn-htp", "greedy", "batched-greedy", "ecm", "random"};
+  std::vector<Index> sizes{50, 100, 150, 250};
+  Index runs = 3;             ///< seeds for each selector and size
+  bool trajectories = false;  ///< compare pulled motions, too
+
+  int threads = 0;
+  std::filesystem::path output, json;
+
+  void run() const;
+};
+
+}  // namespace supple

@@ -1,0 +1,142 @@
+#include <app/json_report.hpp>
+#include <app/pose_file.hpp>
+#include <app/problem_options.hpp>
+#include <io/json_fields.hpp>
+#include <io/node_sets.hpp>
+
+#include <set>
+
+namespace supple {
+
+namespace {
+
+std::vector<Index> fixed_nodes(const ProblemOptions& problem, const TetMesh& mesh) {
+  std::set<Index> nodes;
+  const auto fix = [&](const std::vector<Index>& some) { nodes.insert(some.begin(), some.end()); };
+  for (const std::string& rule : problem.fix) fix(select_nodes(mesh, rule));
+  for (const std::string& box : problem.fix_box) fix(nodes_in_box(mesh, box));
+  for (const std::string& region : problem.fix_region) fix(nodes_of_region(mesh, region));
+  for (const std::filesystem::path& file : problem.fix_file) fix(read_node_set(mesh, file));
+  return {nodes.begin(), nodes.end()};
+}
+
+struct Material {
+  IsotropicModuli moduli;
+  double density = 0;
+};
+
+/// One material for the object, and others for the regions that the file of --materials names.
+void set_materials(const ProblemOptions& problem, Solid& solid) {
+  const Material base{
+      {option_quantity("--young", problem.young, "Pa"), option_quantity("--poisson", problem.poisson, "1")},
+      option_quantity("--density", problem.density, "kg/m^3")};
+  std::vector<Material> materials{base};
+  const TetMesh& mesh = solid.mesh;
+  if (problem.materials) {
+    if (mesh.region.empty())
+      throw InputError(problem.materials->string() +
+                       ": the mesh has no regions, so there is nothing to tell apart");
+    const JsonFields file = JsonFields::read(*problem.materials), regions = file.object("regions");
+    std::map<int, std::int32_t> material_of_region;
+    for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end())) {
+      material_of_region[tag] = 0;
+      const auto name = mesh.region_names.find(tag);
+      for (const std::string& key :
+           {name == mesh.region_names.end() ? "" : name->second, std::to_string(tag)})
+        if (!key.empty() && regions.contains(key)) {
+          const JsonFields fields = regions.object(key);
+          material_of_region[tag] = static_cast<std::int32_t>(materials.size());
+          materials.push_back({{fields.number_or("young", base.moduli.young, positive, "Pa"),
+                                fields.number_or("poisson", base.moduli.poisson, between(-1, 0.5))},
+                               fields.number_or("density", base.density, positive, "kg/m^3")});
+          break;
+        }
+    }
+    file.finish();
+    for (const int tag : mesh.region) solid.material_of_tet.push_back(material_of_region[tag]);
+    solid.density.resize(mesh.num_tets());
+    for (Index e = 0; e < mesh.num_tets(); ++e)
+      solid.density[e] = materials[solid.material_of_tet[e]].density;
+  } else {
+    solid.density = Vector::Constant(1, base.density);
+  }
+  solid.law = problem.law;
+  for (std::size_t k = 0; k < materials.size(); ++k) {
+    const std::vector<double> row = law_parameters(problem.law, materials[k].moduli);
+    solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
+    for (std::size_t j = 0; j < row.size(); ++j) solid.parameters(k, j) = row[j];
+  }
+}
+
+InvertedPoses inverted_poses(const std::string& word) {
+  return word == "keep"     ? InvertedPoses::Keep
+         : word == "shrink" ? InvertedPoses::Shrink
+                            : InvertedPoses::Redraw;
+}
+
+const char* to_text(ForceNorm norm) {
+  return norm == ForceNorm::Mass ? "mass" : "stiffness";
+}
+const char* to_text(InvertedPoses rule) {
+  return rule == InvertedPoses::Keep ? "keep" : rule == InvertedPoses::Shrink ? "shrink" : "redraw";
+}
+
+}  // namespace
+
+Solid load_solid(const ProblemOptions& problem, const TetMesh& mesh) {
+  Solid solid;
+  solid.mesh = mesh;
+  solid.fixed_nodes = fixed_nodes(problem, solid.mesh);
+  solid.damping = {option_quantity("--damping-alpha", problem.damping_alpha, "1/s"),
+                   option_quantity("--damping-beta", problem.damping_beta, "s")};
+  if (solid.damping.alpha < 0 || solid.damping.beta < 0)
+    throw InputError("damping is negative, expected 0 or more");
+  set_materials(problem, solid);
+  return solid;
+}
+
+ReduceOptions reduce_options(const ProblemOptions& problem) {
+  ReduceOptions options = problem.recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
+  options.subspace = problem.subspace;
+  options.seed = problem.seed;
+  if (problem.modes) options.modes = *problem.modes;
+  if (problem.poses) options.poses.count = *problem.poses;
+  if (problem.held_out) options.held_out_poses = *problem.held_out;
+  if (problem.omega_exponent) options.poses.omega_exponent = *problem.omega_exponent;
+  if (!problem.amplitudes.empty()) options.poses.amplitudes = problem.amplitudes;
+  if (problem.norm) options.norm = *problem.norm == "mass" ? ForceNorm::Mass : ForceNorm::Stiffness;
+  if (problem.inverted) options.poses.inverted = inverted_poses(*problem.inverted);
+  if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file);
+  return options;
+}
+
+Json problem_json(const ProblemOptions& problem, const ReduceOptions& options) {
+  Json json{{"recipe", problem.recipe},
+            {"subspace", options.subspace},
+            {"modes", options.modes},
+            {"poses", options.poses.count},
+            {"norm", to_text(options.norm)},
+            {"omega_exponent", options.poses.omega_exponent},
+            {"amplitudes", options.poses.amplitudes},
+            {"inverted", to_text(options.poses.inverted)},
+            {"held_out", options.held_out_poses},
+            {"seed", options.seed},
+            {"material", problem.law},
+            {"young", problem.young},
+            {"poisson", problem.poisson},
+            {"density", problem.density},
+            {"damping_alpha", problem.damping_alpha},
+            {"damping_beta", problem.damping_beta},
+            {"fix", problem.fix},
+            {"fix_box", problem.fix_box},
+            {"fix_region", problem.fix_region}};
+  const auto add_files = [&](const char* key, const std::vector<std::filesystem::path>& files) {
+    for (const std::filesystem::path& file : files) json[key].push_back(file.string());
+  };
+  add_files("fix_file", problem.fix_file);
+  if (problem.materials) json["materials"] = problem.materials->string();
+  if (problem.poses_file) json["poses_file"] = problem.poses_file->string();
+  return json;
+}
+
+}  // namespace supple

@@ -1,0 +1,41 @@
+#pragma once
+/// \file The object and its fitting problem as the command line names them, for all commands that pose one.
+
+#include <app/json_report.hpp>
+#include <reduction/reduce.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace supple {
+
+/// Options as typed. What is not given follows from the recipe.
+struct ProblemOptions {
+  std::string mesh;  ///< file or built-in
+
+  std::string law = "stvk", young = "1e5", poisson = "0.4", density = "1000";
+  std::optional<std::filesystem::path> materials;  ///< other values for regions, JSON
+  std::string damping_alpha = "0", damping_beta = "0";
+  std::vector<std::string> fix, fix_box, fix_region;
+  std::vector<std::filesystem::path> fix_file;
+
+  std::string recipe = "default", subspace = "extended";
+  std::optional<Index> modes, poses, held_out;
+  std::optional<double> omega_exponent;
+  std::vector<double> amplitudes;
+  std::optional<std::string> norm, inverted;
+  std::optional<std::filesystem::path> poses_file;
+  std::uint64_t seed = 1;
+};
+
+/// The mesh with the materials, damping and held nodes of the options.
+Solid load_solid(const ProblemOptions& problem, const TetMesh& mesh);
+/// The recipe with what the options change; selector and size are left to the command.
+ReduceOptions reduce_options(const ProblemOptions& problem);
+/// What poses the problem, and nothing that differs between two runs of the same job.
+Json problem_json(const ProblemOptions& problem, const ReduceOptions& options);
+
+}  // namespace supple

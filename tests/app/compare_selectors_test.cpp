@@ -1,0 +1,56 @@
+#include <tests/app/supple_process.hpp>
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+namespace supple::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+struct CompareSelectorsTest : SuppleProcess {
+  Arguments small(const Arguments& more = {}) const {
+    Arguments arguments{"compare-selectors", "bar:8x2x2", "--fix",      "x<=0", "--modes", "4",
+                        "--poses",           "20",        "--held-out", "10"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+};
+
+TEST_F(CompareSelectorsTest, RunsEverySelectorAtEverySizeWithEverySeed) {
+  const Outcome outcome = supple(small({"--selectors", "nn-sp,nn-htp,random", "--sizes", "20,40", "--runs", "2", "-o",
+                                        "out", "--trajectories", "--json", "report.json"}));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("| nn-sp | 20 |"));
+  const json report = json::parse(read("report.json"));
+  ASSERT_EQ(report["runs"].size(), 12u);
+  double best = 1, worst = 0;
+  for (const json& run : report["runs"]) {
+    EXPECT_LE(run["points"], run["size"]);
+    EXPECT_EQ(run["held_out"].size(), 3u);
+    EXPECT_EQ(run["trajectory_errors"].size(), 3u);
+    if (run["size"] == 40 && run["selector"] == "nn-sp") best = std::min(best, run["training_error"].get<double>());
+    if (run["size"] == 40 && run["selector"] == "random") worst = std::max(worst, run["training_error"].get<double>());
+  }
+  EXPECT_LT(best, worst);
+  for (const char* file : {"runs.csv", "table.md", "index.html", "error-size.svg", "error-time.svg", "convergence.svg",
+                           "trajectory-1.svg", "trajectory-3.svg"})
+    EXPECT_TRUE(std::filesystem::exists(folder / "out" / file)) << file;
+  const std::string page = read("out/index.html");
+  EXPECT_THAT(page, HasSubstr("<svg"));
+  EXPECT_THAT(page, HasSubstr("</html>"));
+}
+
+TEST_F(CompareSelectorsTest, RefusesWhatItCannotRun) {
+  expect_refusal(small({"--selectors", "nn-sp,best"}), {"best"});
+  expect_refusal(small({"--sizes", "20,1000"}), {"--sizes", "1000"});
+  expect_refusal(small({"--sizes", "0"}), {"--sizes"});
+  expect_refusal(small({"--runs", "0"}), {"--runs"});
+  expect_refusal(small({"--json", "no/such/report.json"}), {"no/such"});
+  EXPECT_TRUE(files().empty()) << files().front();
+}
+
+}  // namespace
+}  // namespace supple::test
