@@ -93,8 +93,12 @@ TEST_F(SelectCommandTest, StatesForEverySelectorTheErrorOfItsWeights) {
     EXPECT_NEAR(found["residual"].get<double>(), r.norm(), 1e-10 * r.norm()) << selector;
     EXPECT_NEAR(found["training_error"].get<double>(), r.norm() / b.norm(), 1e-10) << selector;
     EXPECT_LT(found["training_error"], 0.5) << selector;
-    if (selector != "htp" && selector != "niht") EXPECT_GT(w.minCoeff(), 0) << selector;
-    if (!selector.ends_with("niht")) EXPECT_LT(found["kkt_residual"], 1e-10) << selector;
+    if (selector != "htp" && selector != "niht") {
+      EXPECT_GT(w.minCoeff(), 0) << selector;
+    }
+    if (!selector.ends_with("niht")) {
+      EXPECT_LT(found["kkt_residual"], 1e-10) << selector;
+    }
     EXPECT_GE(found["seconds"], 0) << selector;
     EXPECT_GE(found["total_seconds"], found["seconds"]) << selector;
     EXPECT_THAT(found["status"].get<std::string>(),

@@ -361,7 +361,7 @@ TEST_F(MatrixFile, CutOffAnywhereIsRefusedOrFinite) {
   for (const std::string& bytes : samples())
     for (std::size_t size = 0; size < bytes.size(); ++size) {
       const bool refused = is_refused(*this, bytes.substr(0, size));
-      if (bytes.front() != '%') EXPECT_TRUE(refused) << size;  // a cut number of a text is a number still
+      EXPECT_TRUE(refused || bytes.front() == '%') << size;  // a cut number of a text is a number still
     }
 }
 
