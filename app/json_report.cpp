@@ -25,6 +25,17 @@ Json json_numbers(VectorIn values) {
   return std::vector<double>(values.data(), values.data() + values.size());
 }
 
+Json json_history(const SelectionReport& report) {
+  Json history = Json::array();
+  for (const SelectionStep& step : report.history)
+    history.push_back({{"points", step.size},
+                       {"training_error", step.training_error},
+                       {"held_out_error", step.held_out_error},
+                       {"seconds", step.seconds},
+                       {"columns_evaluated", step.columns_evaluated}});
+  return history;
+}
+
 Json json_seconds(const std::vector<std::pair<std::string, double>>& seconds, double total) {
   Json result = Json::object();
   for (const auto& [stage, time] : seconds) result[stage] = result.value(stage, 0.0) + time;

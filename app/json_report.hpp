@@ -2,6 +2,7 @@
 /// \file Reports for machines, and the checks that spare a user a long wait before a file cannot be written.
 
 #include <core/types.hpp>
+#include <sparse/selection.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -21,6 +22,8 @@ inline bool is_stdout(const std::filesystem::path& path) {
 }
 
 Json json_numbers(VectorIn values);
+/// An entry for each iterate of a selector.
+Json json_history(const SelectionReport& report);
 Json json_seconds(const std::vector<std::pair<std::string, double>>& seconds, double total);
 
 /// \throws InputError if a file could not be created at this path; "-" and no path always pass.

@@ -67,13 +67,6 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   json["eigenvalues"] = {{"fitted", json_numbers(report.fitted_eigenvalues)},
                          {"exact", json_numbers(report.exact_eigenvalues)}};
   const SelectionReport& selection = report.selection;
-  Json history = Json::array();
-  for (const SelectionStep& step : selection.history)
-    history.push_back({{"points", step.size},
-                       {"training_error", step.training_error},
-                       {"held_out_error", step.held_out_error},
-                       {"seconds", step.seconds},
-                       {"columns_evaluated", step.columns_evaluated}});
   json["selection"] = {{"selector", options.selector},
                        {"status", to_string(selection.status)},
                        {"stop_reason", selection.stop_reason},
@@ -81,7 +74,7 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
                        {"residual", selection.residual},
                        {"kkt_residual", selection.kkt_residual},
                        {"columns_evaluated", selection.columns_evaluated},
-                       {"history", std::move(history)}};
+                       {"history", json_history(selection)}};
   json["notes"] = report.notes;
   json["options"] = options_json(command, options);
   json["seed"] = options.seed;

@@ -122,13 +122,6 @@ Json options_json(const SelectCommand& command, const SelectionRequest& request)
 Json report_json(const SelectCommand& command, const DenseProblem& problem, const SelectionRequest& request,
                  const Selection& selection, double held_out_error) {
   const SelectionReport& report = selection.report;
-  Json history = Json::array();
-  for (const SelectionStep& step : report.history)
-    history.push_back({{"points", step.size},
-                       {"training_error", step.training_error},
-                       {"held_out_error", step.held_out_error},
-                       {"seconds", step.seconds},
-                       {"columns_evaluated", step.columns_evaluated}});
   return {{"command", "select"},
           {"version", SUPPLE_VERSION},
           {"matrix", command.matrix.string()},
@@ -148,7 +141,7 @@ Json report_json(const SelectCommand& command, const DenseProblem& problem, cons
           {"stop_reason", report.stop_reason},
           {"iterations", report.iterations},
           {"columns_evaluated", report.columns_evaluated},
-          {"history", std::move(history)},
+          {"history", json_history(report)},
           {"options", options_json(command, request)},
           {"threads", num_threads()}};
 }

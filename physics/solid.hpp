@@ -17,11 +17,11 @@ namespace supple {
 struct Solid {
   TetMesh mesh;
   std::string law = "stvk";  ///< one of material_laws()
-  RowMatrix parameters;      ///< one row a material, columns in the order of the law's members [Pa]
-  std::vector<std::int32_t> material_of_tet;   ///< a row of `parameters` a tet; empty: row 0 for all
+  RowMatrix parameters = {};  ///< one row a material, columns in the order of the law's members [Pa]
+  std::vector<std::int32_t> material_of_tet = {};  ///< a row of `parameters` a tet; empty: row 0 for all
   Vector density = Vector::Constant(1, 1000);  ///< [kg/m³], one for all tets or one each
-  std::vector<Index> fixed_nodes;              ///< ascending
-  RayleighDamping damping;
+  std::vector<Index> fixed_nodes = {};         ///< ascending
+  RayleighDamping damping = {};
 
   Vector nodal_mass() const { return lumped_mass(mesh, density); }  ///< n [kg]
 };

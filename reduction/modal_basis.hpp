@@ -23,7 +23,7 @@ struct ModeOptions {
   Index num_modes = 15;     ///< rigid ones included, as the paper counts
   double tolerance = 1e-8;  ///< relative residual of each pair
   std::uint64_t seed = 1;
-  Progress progress;
+  Progress progress = {};
 };
 
 /// \param rest_positions  n × 3; with no rows, rigid modes are not known beforehand and have to be found.

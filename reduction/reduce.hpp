@@ -16,9 +16,9 @@ namespace supple {
 struct ReduceOptions {
   std::string subspace = "extended";  ///< "extended" (W ⊗ I₃, Alg. 2) or "modal" (the linear modes alone)
   Index modes = 15;                   ///< r, rigid ones included
-  PoseOptions poses;                  ///< training poses
+  PoseOptions poses = {};             ///< training poses
   ForceNorm norm = ForceNorm::Stiffness;
-  Matrix given_poses;  ///< d × T, instead of random ones; or 3n × T displacements, projected to the subspace
+  Matrix given_poses = {};  ///< d × T, instead of random ones; or 3n × T displacements, projected to the subspace
   std::string selector = "nn-sp";  ///< see known_selectors()
   Index points = 150;              ///< s, largest number of components
   double target_error = 0;         ///< if positive: as few components as reach this training error

@@ -24,7 +24,7 @@ struct NnSp {
   Index max_iterations = 40;
   /// c/s. More costs more columns and gains little.
   double candidates_per_size = 5;
-  /// Share of s that each iteration tries to exchange, but at least 40 columns (where s is small they cost nothing).
+  /// Share of s that each iteration tries to exchange, but at least 100 columns, which cost nothing where s is small.
   /// A quarter takes a third of the time for 10 to 20 % more error and a trajectory twice as far off.
   double added_per_size = 1;
   /// Stop after so many draws in a row that improve nothing.
@@ -38,7 +38,7 @@ struct NnSp {
     if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
     SelectionRun<P> run(problem, request);
     const Index s = run.rules.size(), c = share(candidates_per_size, s);
-    const Index added = std::max(share(added_per_size, s), std::min<Index>(s, 40));
+    const Index added = std::max(share(added_per_size, s), Index{100});
     Random random(seed);
 
     WorkingSet<P> S = run.start();

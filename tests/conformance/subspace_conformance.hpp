@@ -78,23 +78,23 @@ TYPED_TEST_P(SubspaceConformance, FrequenciesAscendAndOneIsTheSmallestInTheSubsp
 
 // U is given by the action of its rows, of its columns and as a matrix: three ways to say the same.
 TYPED_TEST_P(SubspaceConformance, AllViewsOfTheBasisAgree) {
-  const auto& basis = this->basis;
-  const Matrix U = basis.dense();
-  ASSERT_EQ(basis.dim(), U.cols());
-  ASSERT_EQ(basis.full_dim(), U.rows());
-  const Vector q = random_vector(basis.dim(), 1, 3), f = random_vector(basis.full_dim(), 1, 4);
+  const auto& view = this->basis;
+  const Matrix U = view.dense();
+  ASSERT_EQ(view.dim(), U.cols());
+  ASSERT_EQ(view.full_dim(), U.rows());
+  const Vector q = random_vector(view.dim(), 1, 3), f = random_vector(view.full_dim(), 1, 4);
   const double rounding = 1e-13 * U.cwiseAbs().rowwise().sum().maxCoeff();
-  EXPECT_TRUE(is_near(basis.reconstruct(q), U * q, rounding));
-  EXPECT_TRUE(is_near(basis.project(f), U.transpose() * f, 1e-13 * U.cwiseAbs().colwise().sum().maxCoeff()));
-  Vector sum = Vector::Ones(basis.dim());
+  EXPECT_TRUE(is_near(view.reconstruct(q), U * q, rounding));
+  EXPECT_TRUE(is_near(view.project(f), U.transpose() * f, 1e-13 * U.cwiseAbs().colwise().sum().maxCoeff()));
+  Vector sum = Vector::Ones(view.dim());
   for (const Index dof : {Index{0}, Index{1}, Index{2}, U.rows() / 2, U.rows() - 1}) {
-    EXPECT_NEAR(basis.at(dof, q), U.row(dof) * q, rounding);
+    EXPECT_NEAR(view.at(dof, q), U.row(dof) * q, rounding);
     const Vector before = sum;
-    basis.add_row(dof, 2.5, sum);
+    view.add_row(dof, 2.5, sum);
     EXPECT_TRUE(is_near(sum - before, 2.5 * U.row(dof).transpose(), 1e-14 * (1 + sum.norm())));
   }
-  EXPECT_THROW((void)basis.reconstruct(Vector::Zero(basis.dim() + 1)), std::invalid_argument);
-  EXPECT_THROW((void)basis.project(Vector::Zero(basis.full_dim() - 1)), std::invalid_argument);
+  EXPECT_THROW((void)view.reconstruct(Vector::Zero(view.dim() + 1)), std::invalid_argument);
+  EXPECT_THROW((void)view.project(Vector::Zero(view.full_dim() - 1)), std::invalid_argument);
 }
 
 REGISTER_TYPED_TEST_SUITE_P(SubspaceConformance, ColumnsAreMassOrthonormal, FixedNodesDoNotMove,
