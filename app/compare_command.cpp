@@ -53,7 +53,10 @@ struct Series {
   double relative() const { return ratio(difference.norm(), reference.norm()); }
   /// The worst frame against the largest reference.
   double largest() const { return ratio(difference.maxCoeff(), reference.maxCoeff()); }
-  Vector share() const { return difference / reference.maxCoeff(); }
+  /// Of the largest reference, in every frame; not a number if that is zero.
+  Vector share() const {
+    return difference.unaryExpr([size = reference.maxCoeff()](double error) { return ratio(error, size); });
+  }
 
  private:
   static double ratio(double error, double size) {
@@ -163,7 +166,10 @@ void CompareCommand::run() const {
   const auto name = names(*this, a, b);
   if (!output.empty()) {
     write_errors(output / "errors.csv", result);
-    if (can_plot())
+    if (!(result.time[result.time.size() - 1] > 0 && result.position.share().allFinite() &&
+          result.velocity.share().allFinite() && result.energy.share().allFinite()))
+      warn("the reference does not move: there will be no errors.png");
+    else if (can_plot())
       draw_errors(output / "errors.png", result);
     else
       warn("gnuplot is not installed: there will be no errors.png");

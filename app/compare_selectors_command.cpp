@@ -52,7 +52,7 @@ void CompareSelectorsCommand::run() const {
       throw InputError("--sizes holds " + std::to_string(size) + ", expected 1 to the number of tets, " +
                        std::to_string(solid.mesh.num_tets()));
   if (!output.empty()) make_folder(output);
-  const ReduceOptions options = reduce_options(*this);
+  const ReduceOptions options = reduce_options(*this, named.mesh);
   std::vector<PullScene> scenes;
   if (trajectories)
     scenes = {{.name = "pull"}, {.name = "ramped pull", .ramp = 60}, {.name = "damped pull", .damping = 0.05}};

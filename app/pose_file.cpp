@@ -1,4 +1,5 @@
 #include <app/pose_file.hpp>
+#include <app/trajectory.hpp>
 #include <core/check.hpp>
 #include <core/tensor_file.hpp>
 #include <io/matrix_file.hpp>
@@ -7,28 +8,40 @@ namespace supple {
 
 namespace {
 
-Matrix read_tensors(const std::filesystem::path& path) {
-  const TensorFile file(path);
-  if (file.contains("poses")) return file.matrix("poses");
-  if (file.contains("q")) return file.matrix("q").transpose();
-  if (file.contains("displacement")) {
-    const std::vector<Index>& shape = file.shape("displacement");
-    const auto u = file.values<float>("displacement", {TensorFile::any, TensorFile::any, 3});
-    return Eigen::Map<const Eigen::MatrixXf>(u.data(), 3 * shape[1], shape[0]).cast<double>();
-  }
-  throw InputError(path.string() + ": there is no array 'poses', nor 'q' or 'displacement' of a trajectory");
+Matrix frames_of_trajectory(const std::filesystem::path& path, const TetMesh& mesh) {
+  const Trajectory trajectory = load_trajectory(path);
+  const ReducedModel model = load_model_of(trajectory, path);
+  if (model.solid.mesh.nodes.rows() != mesh.nodes.rows() || model.solid.mesh.nodes != mesh.nodes)
+    throw InputError(path.string() + ": the trajectory is of another mesh than the one to be reduced");
+  std::vector<Index> deformed;
+  for (Index f = 0; f < trajectory.num_frames(); ++f)
+    if (!trajectory.u.row(f).isZero(0)) deformed.push_back(f);
+  Matrix poses(3 * mesh.num_nodes(), static_cast<Index>(deformed.size()));
+  for (Index t = 0; t < poses.cols(); ++t) poses.col(t) = frame_displacement(trajectory, model, deformed[t]);
+  return poses;
 }
 
 }  // namespace
 
-Matrix read_poses(const std::filesystem::path& path) {
-  const Matrix all = is_matrix_file(path) ? read_matrix(path) : read_tensors(path);
-  if (!all.allFinite()) throw InputError(path.string() + ": a pose is not finite");
-  std::vector<Index> deformed;  // at rest there is no force to fit
-  for (Index t = 0; t < all.cols(); ++t)
-    if (!all.col(t).isZero(0)) deformed.push_back(t);
-  if (deformed.empty()) throw InputError(path.string() + ": there are no poses");
-  return all(Eigen::all, deformed);
+Matrix read_poses(const std::filesystem::path& path, const TetMesh& mesh) {
+  if (std::filesystem::is_directory(path)) return read_poses(path / trajectory_file, mesh);
+  Matrix poses;
+  if (is_matrix_file(path)) {
+    poses = read_matrix(path);
+  } else if (const TensorFile file(path); file.contains("poses")) {
+    poses = file.matrix("poses");
+  } else if (file.contains("time")) {
+    poses = frames_of_trajectory(path, mesh);
+  } else {
+    throw InputError(path.string() + ": there is no array 'poses', and it is no trajectory");
+  }
+  if (poses.cols() == 0) throw InputError(path.string() + ": there are no poses");
+  for (Index t = 0; t < poses.cols(); ++t) {
+    if (!poses.col(t).allFinite()) throw InputError(path.string() + ": pose " + std::to_string(t) + " is not finite");
+    if (poses.col(t).isZero(0))
+      throw InputError(path.string() + ": pose " + std::to_string(t) + " is at rest, where there is no force to fit");
+  }
+  return poses;
 }
 
 }  // namespace supple

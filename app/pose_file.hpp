@@ -1,15 +1,17 @@
 #pragma once
 /// \file Training poses from files.
 
-#include <core/types.hpp>
+#include <physics/tet_mesh.hpp>
 
 #include <filesystem>
 
 namespace supple {
 
-/// One pose a column, as ReduceOptions::given_poses takes them: the array "poses" of a tensor file (rows ×
-/// T), the frames of a trajectory, or a matrix of rows × T as read_matrix takes it (NumPy, Matrix Market).
-/// \throws InputError naming the file and what was expected.
-Matrix read_poses(const std::filesystem::path& path);
+/// One pose a column, as ReduceOptions::given_poses takes them: the array "poses" of a tensor file or a matrix as
+/// read_matrix takes it (NumPy, Matrix Market), coordinates in the subspace (d × T) or displacements of all nodes
+/// (3n × T); or a trajectory of supple simulate, whose frames become displacements, but for those at rest.
+/// \param mesh  of the object to be reduced; a trajectory must be of the same.
+/// \throws InputError naming the file, the pose and what was expected; a pose at rest has no force to fit.
+Matrix read_poses(const std::filesystem::path& path, const TetMesh& mesh);
 
 }  // namespace supple

@@ -95,7 +95,7 @@ Solid load_solid(const ProblemOptions& problem, const TetMesh& mesh) {
   return solid;
 }
 
-ReduceOptions reduce_options(const ProblemOptions& problem) {
+ReduceOptions reduce_options(const ProblemOptions& problem, const TetMesh& mesh) {
   ReduceOptions options = problem.recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
   options.subspace = problem.subspace;
   options.seed = problem.seed;
@@ -105,8 +105,9 @@ ReduceOptions reduce_options(const ProblemOptions& problem) {
   if (problem.omega_exponent) options.poses.omega_exponent = *problem.omega_exponent;
   if (!problem.amplitudes.empty()) options.poses.amplitudes = problem.amplitudes;
   if (problem.norm) options.norm = *problem.norm == "mass" ? ForceNorm::Mass : ForceNorm::Stiffness;
-  if (problem.inverted) options.poses.inverted = inverted_poses(*problem.inverted);
-  if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file);
+  options.poses.inverted = inverted_rule(
+      problem.law, problem.inverted ? std::optional(inverted_poses(*problem.inverted)) : std::nullopt);
+  if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, mesh);
   return options;
 }
 
@@ -118,7 +119,7 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options) {
             {"norm", to_text(options.norm)},
             {"omega_exponent", options.poses.omega_exponent},
             {"amplitudes", options.poses.amplitudes},
-            {"inverted", to_text(options.poses.inverted)},
+            {"inverted", to_text(*options.poses.inverted)},
             {"held_out", options.held_out_poses},
             {"seed", options.seed},
             {"material", problem.law},

@@ -34,7 +34,8 @@ struct ProblemOptions {
 /// The mesh with the materials, damping and held nodes of the options.
 Solid load_solid(const ProblemOptions& problem, const TetMesh& mesh);
 /// The recipe with what the options change; selector and size are left to the command.
-ReduceOptions reduce_options(const ProblemOptions& problem);
+/// \param mesh  of the object, which a file of poses must fit.
+ReduceOptions reduce_options(const ProblemOptions& problem, const TetMesh& mesh);
 /// What poses the problem, and nothing that differs between two runs of the same job.
 Json problem_json(const ProblemOptions& problem, const ReduceOptions& options);
 

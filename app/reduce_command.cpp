@@ -17,8 +17,8 @@ namespace {
 
 constexpr Index largest_search = 1000;  // points, if only a target error is given
 
-ReduceOptions method(const ReduceCommand& command) {
-  ReduceOptions options = reduce_options(command);
+ReduceOptions method(const ReduceCommand& command, const TetMesh& mesh) {
+  ReduceOptions options = reduce_options(command, mesh);
   if (command.target_error) {
     options.target_error = *command.target_error;
     options.points = largest_search;
@@ -174,7 +174,7 @@ void ReduceCommand::run() const {
   const NamedMesh named = load_mesh(mesh);
   for (const std::string& warning : named.notes.warnings) warn(mesh + ": " + warning);
   const Solid solid = load_solid(*this, named.mesh);
-  const ReduceOptions options = method(*this);
+  const ReduceOptions options = method(*this, named.mesh);
   if (!plots.empty()) make_folder(plots);
   const double read_seconds = watch.seconds();
 

@@ -328,7 +328,9 @@ void SimulateCommand::run() const {
     save_trajectory(output / trajectory_file, trajectory);
     write_energies(output / "energies.csv", result);
     write_tracked(output / "tracked.csv", what, result);
-    if (can_plot())
+    if (result.steps.back().time == 0)
+      warn("there is no step to draw: there will be no energy.png");
+    else if (can_plot())
       draw_energies(output / "energy.png", result);
     else
       warn("gnuplot is not installed: there will be no energy.png");

@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
   for (const auto& [share, error] : report.held_out)
     out["held_out"][std::to_string(share).substr(0, 3)] = error;
 
-  const double diagonal = bounding_box(mesh.nodes).diagonal(), omega = std::sqrt(report.exact_eigenvalues[0]);
+  const double diagonal = bounding_box(mesh.nodes).diagonal();
   ReducedModel unfitted = model;
   unfitted.indices.resize(mesh.num_tets());
   std::iota(unfitted.indices.begin(), unfitted.indices.end(), Index{0});
@@ -140,7 +140,8 @@ int main(int argc, char** argv) {
                           {.name = "violent", .target = target},
                           {.name = "violent, ramped", .target = target, .ramp = 60},
                           {.name = "violent, damped", .target = target, .damping = 0.05}},
-                         omega, diagonal, system);
+                         reduced_modes(model.rest_stiffness, 
+                                       std::visit([](const auto& basis) { return basis->report.known_rigid_modes(); }, model.subspace)), diagonal, system);
     std::vector<PulledMotion> motions;
     for (std::size_t k = 0; k < pulls.scenes().size(); ++k) {  // one by one, for the times
       motions.push_back(pulls.move(system, k));

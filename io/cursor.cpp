@@ -17,6 +17,11 @@ std::string in_quotes(std::string_view word) {
   return "\"" + shown + (word.size() > 40 ? "…\"" : "\"");
 }
 
+/// Where the number in a word begins: std::from_chars takes no '+'.
+const char* without_plus(std::string_view word) {
+  return word.data() + (word.starts_with('+') && !word.starts_with("+-"));
+}
+
 }  // namespace
 
 std::string read_bytes(const std::filesystem::path& path) {
@@ -100,7 +105,7 @@ double Cursor::real_in_line(std::string_view what) {
 std::int64_t Cursor::to_integer(std::string_view word, std::string_view what) const {
   std::int64_t value = 0;
   const char* const end = word.data() + word.size();
-  const auto [rest, error] = std::from_chars(word.data() + word.starts_with('+'), end, value);
+  const auto [rest, error] = std::from_chars(without_plus(word), end, value);
   if (error != std::errc() || rest != end) fail_expecting(what, word);
   return value;
 }
@@ -108,7 +113,7 @@ std::int64_t Cursor::to_integer(std::string_view word, std::string_view what) co
 double Cursor::to_real(std::string_view word, std::string_view what) const {
   double value = 0;
   const char* const end = word.data() + word.size();
-  const auto [rest, error] = std::from_chars(word.data() + word.starts_with('+'), end, value);
+  const auto [rest, error] = std::from_chars(without_plus(word), end, value);
   if (error == std::errc::result_out_of_range && rest == end)  // 1e-400 is zero, 1e400 infinite
     return std::strtod(std::string(word).c_str(), nullptr);
   if (error != std::errc() || rest != end) fail_expecting(what, word);

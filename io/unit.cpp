@@ -121,7 +121,7 @@ double conversion_factor(std::string_view given, std::string_view unit) {
 
 double parse_quantity(std::string_view text, std::string_view unit) {
   double value;
-  const std::string_view number = text.starts_with('+') ? text.substr(1) : text;
+  const std::string_view number = text.starts_with('+') && !text.starts_with("+-") ? text.substr(1) : text;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (error != std::errc{} || !std::isfinite(value))
     throw InputError("'" + std::string(text) + "' is not a quantity");

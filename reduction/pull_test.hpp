@@ -7,8 +7,6 @@
 #include <physics/newmark.hpp>
 #include <reduction/reduced_system.hpp>
 
-#include <Eigen/Cholesky>
-
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -16,13 +14,14 @@
 
 namespace supple {
 
-/// A uniform acceleration for `steps` steps of a 60th of the slowest period, from rest.
+/// A load from rest, for `steps` steps of a 60th of the slowest period: a uniform acceleration of an object that is
+/// held; a force along the slowest flexible mode of one that is free, which would fly off without deforming.
 struct PullScene {
   std::string name;
   double target = 0.25;              ///< largest displacement of a node, as a share of the object's diagonal
   double ramp = 0;                   ///< steps over which the pull grows; 0: it is there at once
   double damping = 0;                ///< ratio of the slowest mode, half by α M and half by β K
-  Point direction = {0.5, 0.1, 1};
+  Point direction = {0.5, 0.1, 1};  ///< of the acceleration
   int steps = 120;
 };
 
@@ -41,18 +40,18 @@ class PullTest {
  public:
   using System = ReducedSystem<Model, S>;
 
-  /// \param omega     of the slowest flexible mode [rad/s].  \param diagonal  of the object [m].
+  /// \param modes     of the exact reduced stiffness.  \param diagonal  of the object [m].
   /// \param sample    a system to scale the pulls by, so that its motions reach their targets; a rough
   /// selection will do.
-  PullTest(std::vector<PullScene> scenes, double omega, double diagonal,
-           const ReducedSystem<Model, S>& sample)
-      : scenes_(std::move(scenes)), omega_(omega), diagonal_(diagonal) {
-    Matrix K = sample.rest_stiffness();
-    K.diagonal().array() += 1e-6 * omega * omega;  // free objects
-    const Eigen::LLT<Matrix> factor(K);
+  PullTest(std::vector<PullScene> scenes, const ReducedModes& modes, double diagonal, const System& sample)
+      : scenes_(std::move(scenes)), omega_(modes.omega[modes.num_zero]), diagonal_(diagonal) {
+    const Vector compliance = modes.omega.tail(modes.omega.size() - modes.num_zero).array().square().inverse();
+    const auto Phi = modes.Phi.rightCols(compliance.size());  // modes with energy
     for (const PullScene& scene : scenes_) {
-      Point& pull = pulls_.emplace_back(scene.direction.normalized());
-      pull *= scene.target / reach(sample, factor.solve(sample.project({.gravity = pull}).force));
+      Vector& pull = pulls_.emplace_back(modes.num_zero > 0
+                                             ? Vector(Phi.col(0))
+                                             : sample.project({.gravity = scene.direction.normalized()}).force);
+      pull *= scene.target / reach(sample, Phi * compliance.cwiseProduct(Phi.transpose() * pull));
       for (int pass = 0; pass < 3; ++pass)  // large motions are not proportional to the pull
         pull *= scene.target / reach(sample, move(sample, pulls_.size() - 1).q);
     }
@@ -83,7 +82,7 @@ class PullTest {
  private:
   std::vector<PullScene> scenes_;
   double omega_, diagonal_;
-  std::vector<Point> pulls_;  // [m/s²]
+  std::vector<Vector> pulls_;  // reduced forces, d
 };
 
 /// ‖q − q*‖ / ‖q*‖ over all steps: the mass-weighted L² distance of the displacements, relative.
@@ -101,7 +100,7 @@ PulledMotion PullTest<Model, S>::move(const System& system, std::size_t index, N
   State state = State::at_rest(system.dim());
   const auto load_at = [&](int step) {
     const double share = scene.ramp > 0 ? std::min(1.0, step / scene.ramp) : 1.0;
-    return system.project({.gravity = share * pulls_[index]});
+    return AffineLoad<Matrix>{share * pulls_[index], {}};
   };
   newmark.balance(load_at(0), state);
   PulledMotion motion;

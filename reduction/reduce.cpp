@@ -56,6 +56,14 @@ void check(const ReduceOptions& options) {
           "selector '" + options.selector + "' is not known, see known_selectors()");
 }
 
+InvertedPoses inverted_rule(std::string_view law, std::optional<InvertedPoses> asked) {
+  const bool finite_energy = law != "mooney-rivlin";
+  require(finite_energy || asked != InvertedPoses::Keep,
+          "poses with inverted tets cannot be kept: the energy of " + std::string(law) +
+              " is infinite there; expected shrink or redraw");
+  return asked.value_or(finite_energy ? InvertedPoses::Keep : InvertedPoses::Shrink);
+}
+
 ReduceOptions ReduceOptions::paper() {
   ReduceOptions options;
   options.poses.count = 1000;

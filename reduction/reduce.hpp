@@ -7,7 +7,9 @@
 #include <reduction/training_poses.hpp>
 #include <sparse/selection.hpp>
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,7 +24,7 @@ struct ReduceOptions {
   std::string selector = "nn-sp";  ///< see known_selectors()
   Index points = 150;              ///< s, largest number of components
   double target_error = 0;         ///< if positive: as few components as reach this training error
-  Index held_out_poses = 100;      ///< at each of three amplitudes; 0: measure nothing held out
+  Index held_out_poses = 100;      ///< random ones at each of three amplitudes; 0: measure nothing held out
   std::uint64_t seed = 1;
 
   /// The paper's: 1000 poses with deviations ∝ 1/ω̄, errors in the M-orthonormal basis, NN-HTP. The amplitude,
@@ -30,6 +32,10 @@ struct ReduceOptions {
   /// diagonal).
   static ReduceOptions paper();
 };
+
+/// What becomes of poses with inverted tets of a material law: as asked for; otherwise Keep where the law's energy
+/// is finite in such tets, else Shrink. \throws std::invalid_argument if Keep is asked for where it is not.
+InvertedPoses inverted_rule(std::string_view law, std::optional<InvertedPoses> asked);
 
 /// Everything that was measured on the way.
 struct ReduceReport {

@@ -97,18 +97,22 @@ Training<Model, S> train(const Solid& solid, std::shared_ptr<const FullSystem<Mo
   });
   PoseOptions pose_options = options.poses;
   pose_options.seed += 1000003 * options.seed;  // the seed of a run moves all random choices
+  pose_options.inverted = inverted_rule(solid.law, options.poses.inverted);
   const auto sample = [&](const PoseOptions& some) {
     return sample_poses(system->shared_model(), *subspace, modes, total_mass, diagonal, some);
   };
   const Matrix Q = stage("training poses", [&](auto) -> Matrix {
-    if (options.given_poses.size() > 0)
-      return poses_in_subspace(*subspace, system->nodal_mass(), options.given_poses);
-    TrainingPoses poses = sample(pose_options);
+    const bool given = options.given_poses.size() > 0;
+    TrainingPoses poses =
+        given ? treat_inverted(system->shared_model(), *subspace,
+                               poses_in_subspace(*subspace, system->nodal_mass(), options.given_poses),
+                               *pose_options.inverted)
+              : sample(pose_options);
     report.inverted_poses = poses.inverted;
     report.redrawn_poses = poses.redrawn;
     report.shrunk_poses = poses.shrunk;
     if (poses.inverted > 0)
-      report.notes.push_back(std::to_string(poses.inverted) + " of " + std::to_string(pose_options.count) +
+      report.notes.push_back(std::to_string(poses.inverted) + " of " + std::to_string(poses.Q.cols()) +
                              " training poses had inverted tets (" +
                              std::to_string(poses.inverted_components) + " in all); " +
                              std::to_string(poses.redrawn) + " draws were redrawn, " +
@@ -147,9 +151,6 @@ void with_training(const Solid& solid, const ReduceOptions& options, Stages& sta
   report.fixed_nodes = static_cast<Index>(solid.fixed_nodes.size());
   with_law(solid.law, [&]<template <typename> class Material>() {
     using Model = TetElasticity<Material>;
-    ReduceOptions used = options;
-    if (solid.law == "mooney-rivlin" && used.poses.inverted == InvertedPoses::Keep)
-      used.poses.inverted = InvertedPoses::Shrink;
     const auto system = stage("full system", [&](auto) {
       return std::make_shared<const FullSystem<Model>>(make_model<Material>(solid), solid.nodal_mass(),
                                                        solid.fixed_nodes);
@@ -165,11 +166,11 @@ void with_training(const Solid& solid, const ReduceOptions& options, Stages& sta
         return std::make_shared<const NodalBasis>(
             extend_modes(modes, solid.mesh.nodes, system->nodal_mass()));
       });
-      visit(train<Model, NodalBasis>(solid, system, std::move(subspace), used, stage));
+      visit(train<Model, NodalBasis>(solid, system, std::move(subspace), options, stage));
     } else {
       auto subspace = std::make_shared<const DenseBasis>(
           DenseBasis{modes.vectors, {modes.omega, modes.residuals, modes.num_rigid, 0, modes.notes}});
-      visit(train<Model, DenseBasis>(solid, system, std::move(subspace), used, stage));
+      visit(train<Model, DenseBasis>(solid, system, std::move(subspace), options, stage));
     }
   });
 }

@@ -138,7 +138,9 @@ ReducedModel load_model(const std::filesystem::path& path) {
   model.rest_stiffness = file.matrix("rest_stiffness", model.dim(), model.dim());
   if (!model.weights.allFinite() || !(model.weights.array() > 0).all())
     throw fail("selection.weights are not all positive");
-  if (!nodes.allFinite() || !model.rest_stiffness.allFinite() ||
+  if (!(damping.array() >= 0).all()) throw fail("damping is negative or not a number, expected 0 or more");
+  if (!nodes.allFinite() || !damping.allFinite() || !solid.parameters.allFinite() || !solid.density.allFinite() ||
+      !std::visit([](const auto& basis) { return basis->report.omega.allFinite(); }, model.subspace) || !model.rest_stiffness.allFinite() ||
       !std::visit([](const auto& basis) { return basis->W.allFinite(); }, model.subspace))
     throw fail("it holds numbers that are not finite");
   try {  // what constructing the model demands: law, parameters, volumes

@@ -50,13 +50,18 @@ struct SelectionStudy::Model final : Interface {
     stage("reference motions", [&](auto) {
       const Index m = training.fitting.cols();
       const Selection rough = NnSp{.max_iterations = 5}(any, std::min(m, 2 * training.fitting.poses().rows()));
-      pulls.emplace(std::move(pulled), std::sqrt(exact_softest), diagonal,
+      pulls.emplace(std::move(pulled), training.modes, diagonal,
                     training.reduced_system(rough.indices, rough.weights));
       std::vector<Index> all(m);
       std::iota(all.begin(), all.end(), Index{0});
       const auto unfitted = training.reduced_system(all, Vector::Ones(m));
       references = pulls->move(unfitted);
-      for (const PulledMotion& motion : references) this->reached.push_back(pulls->reach(unfitted, motion.q));
+      for (std::size_t k = 0; k < references.size(); ++k) {
+        this->reached.push_back(pulls->reach(unfitted, references[k].q));
+        if (references[k].missed_steps > 0)
+          stage.report().notes.push_back(std::to_string(references[k].missed_steps) + " steps of the reference motion '" +
+                                         pulls->scenes()[k].name + "' missed the tolerance");
+      }
     });
     this->scenes = pulls->scenes();
   }

@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <optional>
 
 namespace supple {
 
@@ -27,7 +29,7 @@ struct PoseOptions {
   /// box's diagonal; pose t uses entry t modulo their number. Mixed sizes keep small motions, which the rest
   /// stiffness rules, from drowning in large ones.
   std::vector<double> amplitudes = {0.05, 0.017, 0.005};
-  InvertedPoses inverted = InvertedPoses::Keep;
+  std::optional<InvertedPoses> inverted = {};  ///< none: Keep, or Shrink for laws without energy there
   std::uint64_t seed = 1;
 };
 
@@ -52,6 +54,47 @@ class PoseSampler {
   Vector deviations_;
 };
 
+/// Counts the poses with inverted components and treats them by the rule.
+/// \param draw  another pose in place of pose t, for InvertedPoses::Redraw; without it such poses are shrunk.
+/// \throws SolverError if a pose stays inverted however small.
+template <ForceModel Model, Subspace S>
+TrainingPoses treat_inverted(const std::shared_ptr<const Model>& model, const S& subspace, Matrix Q,
+                             InvertedPoses rule, const std::function<Vector(Index t)>& draw = {}) {
+  TrainingPoses poses{.Q = std::move(Q)};
+  std::vector<Index> bad;
+  const std::vector<Index> inverted = count_inverted(model, subspace, poses.Q);
+  for (Index t = 0; t < poses.Q.cols(); ++t)
+    if (inverted[t] > 0) {
+      bad.push_back(t);
+      poses.inverted_components += inverted[t];
+    }
+  poses.inverted = static_cast<Index>(bad.size());
+  if (rule == InvertedPoses::Keep) return poses;
+
+  const auto still_bad = [&] {
+    const std::vector<Index> counts = count_inverted(model, subspace, poses.Q(Eigen::all, bad));
+    std::vector<Index> rest;
+    for (std::size_t k = 0; k < bad.size(); ++k)
+      if (counts[k] > 0) rest.push_back(bad[k]);
+    return rest;
+  };
+  if (rule == InvertedPoses::Redraw && draw)
+    for (int attempt = 0; attempt < 20 && !bad.empty(); ++attempt) {
+      for (const Index t : bad) poses.Q.col(t) = draw(t);
+      poses.redrawn += static_cast<Index>(bad.size());
+      bad = still_bad();
+    }
+  poses.shrunk = static_cast<Index>(bad.size());
+  for (int attempt = 0; !bad.empty(); ++attempt) {
+    if (attempt == 60)
+      throw SolverError("pose " + std::to_string(bad[0]) +
+                        " has inverted components however small it is made");
+    for (const Index t : bad) poses.Q.col(t) *= 0.75;
+    bad = still_bad();
+  }
+  return poses;
+}
+
 /// \param diagonal  of the object's bounding box at rest [m].
 /// \throws std::invalid_argument for options out of range; SolverError if a pose stays inverted however
 /// small.
@@ -69,44 +112,9 @@ TrainingPoses sample_poses(const std::shared_ptr<const Model>& model, const S& s
   const auto draw = [&](Index t) -> Vector {
     return options.amplitudes[t % options.amplitudes.size()] * diagonal * sampler.draw(random);
   };
-  TrainingPoses poses;
-  poses.Q.resize(subspace.dim(), options.count);
-  for (Index t = 0; t < options.count; ++t) poses.Q.col(t) = draw(t);
-
-  std::vector<Index> bad;
-  const std::vector<Index> inverted = count_inverted(model, subspace, poses.Q);
-  for (Index t = 0; t < options.count; ++t)
-    if (inverted[t] > 0) {
-      bad.push_back(t);
-      poses.inverted_components += inverted[t];
-    }
-  poses.inverted = static_cast<Index>(bad.size());
-  if (options.inverted == InvertedPoses::Keep) return poses;
-
-  const auto still_bad = [&] {
-    Matrix Q(subspace.dim(), bad.size());
-    for (std::size_t k = 0; k < bad.size(); ++k) Q.col(k) = poses.Q.col(bad[k]);
-    const std::vector<Index> counts = count_inverted(model, subspace, Q);
-    std::vector<Index> rest;
-    for (std::size_t k = 0; k < bad.size(); ++k)
-      if (counts[k] > 0) rest.push_back(bad[k]);
-    return rest;
-  };
-  if (options.inverted == InvertedPoses::Redraw)
-    for (int attempt = 0; attempt < 20 && !bad.empty(); ++attempt) {
-      for (const Index t : bad) poses.Q.col(t) = draw(t);
-      poses.redrawn += static_cast<Index>(bad.size());
-      bad = still_bad();
-    }
-  poses.shrunk = static_cast<Index>(bad.size());
-  for (int attempt = 0; !bad.empty(); ++attempt) {
-    if (attempt == 60)
-      throw SolverError("pose " + std::to_string(bad[0]) +
-                        " has inverted components however small it is made");
-    for (const Index t : bad) poses.Q.col(t) *= 0.75;
-    bad = still_bad();
-  }
-  return poses;
+  Matrix Q(subspace.dim(), options.count);
+  for (Index t = 0; t < options.count; ++t) Q.col(t) = draw(t);
+  return treat_inverted(model, subspace, std::move(Q), options.inverted.value_or(InvertedPoses::Keep), draw);
 }
 
 }  // namespace supple

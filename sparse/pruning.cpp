@@ -24,9 +24,12 @@ std::vector<Index> prune(MatrixIn gram, VectorIn weights, Index size, const std:
   if (n > size) {
     const Vector scale = gram.diagonal()(active).cwiseSqrt().cwiseInverse();  // to unit columns
     Matrix H = scale.asDiagonal() * gram(active, active) * scale.asDiagonal();
-    const Eigen::LLT<Matrix> factor(H);
-    if (factor.info() != Eigen::Success)
-      throw SolverError("columns with a weight depend linearly on each other");
+    Eigen::LLT<Matrix> factor(H);
+    for (double ridge = 1e-14; factor.info() != Eigen::Success; ridge *= 100) {  // dependent up to rounding
+      if (ridge > 1e-6) throw SolverError("the Gram matrix of columns with a weight is indefinite");
+      H.diagonal().array() += ridge;
+      factor.compute(H);
+    }
     H = factor.solve(Matrix::Identity(n, n));
     w = w.cwiseQuotient(scale);
 

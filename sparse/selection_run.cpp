@@ -1,5 +1,7 @@
 #include <sparse/selection_run.hpp>
 
+#include <cstdio>
+
 namespace supple {
 
 namespace {
@@ -8,6 +10,12 @@ void require_columns(const char* name, const std::vector<Index>& indices, Index 
   for (Index j : indices)
     require(0 <= j && j < cols, std::string(name) + " holds column " + std::to_string(j) +
                                     ", expected 0 to " + std::to_string(cols - 1));
+}
+
+std::string to_text(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", x);
+  return text;
 }
 
 }  // namespace
@@ -29,6 +37,10 @@ SelectionRules::SelectionRules(const SelectionRequest& request, Index cols, cons
     if (!std::isfinite(b[i]))
       throw InputError("b is " + std::to_string(b[i]) + " in row " + std::to_string(i) +
                        ", expected a finite number");
+  const double largest = b.size() > 0 ? b.cwiseAbs().maxCoeff() : 0;
+  if (largest > 0 && largest < 1e-140)
+    throw InputError("the largest entry of b is " + to_text(largest) +
+                     ", whose square is lost to rounding; expected 0 or at least 1e-140: scale A and b");
 
   role_.assign(cols, request.candidates.empty() ? Role::Candidate : Role::Excluded);
   for (Index j : request.candidates) role_[j] = Role::Candidate;

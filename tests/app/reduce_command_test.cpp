@@ -176,6 +176,29 @@ TEST_F(ReduceCommandTest, FitsPosesOfAFile) {
   tensors.add("poses", Matrix(Matrix::Ones(7, 3)));
   tensors.write(folder / "wrong.safetensors");
   expect_refusal(small({"--poses-file", "wrong.safetensors"}), {"7"});
+  poses.col(4).setZero();
+  tensors = {};
+  tensors.add("poses", poses);
+  tensors.write(folder / "rest.safetensors");
+  expect_refusal(small({"--poses-file", "rest.safetensors"}), {"rest.safetensors", "pose 4", "at rest"});
+}
+
+TEST_F(ReduceCommandTest, FitsPosesOfATrajectoryWhateverItsSubspace) {
+  ASSERT_EQ(supple(small({"--subspace", "modal"})).exit_code, 0);
+  ASSERT_EQ(supple({"simulate", "bar.supple", "-o", "run", "--every", "10"}).exit_code, 0);
+  Arguments arguments = small({"--poses-file", "run"});
+  arguments[3] = "again.supple";  // the trajectory needs its own model
+  const json fitted = report(arguments);
+  EXPECT_EQ(fitted["poses"]["count"], 18);  // the first frame is at rest
+  EXPECT_LT(fitted["training_error"], 0.2);
+  arguments[1] = "bar:8x2x3";
+  expect_refusal(arguments, {"run", "another mesh"});
+}
+
+TEST_F(ReduceCommandTest, KeepsNoPosesOfInfiniteEnergy) {
+  EXPECT_EQ(report(small({"--material", "mooney-rivlin"}))["options"]["inverted"], "shrink");
+  EXPECT_EQ(report(small({}))["options"]["inverted"], "keep");
+  expect_refusal(small({"--material", "mooney-rivlin", "--inverted", "keep"}), {"inverted", "shrink or redraw"});
 }
 
 TEST_F(ReduceCommandTest, DrawsWhatItSelected) {

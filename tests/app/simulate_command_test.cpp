@@ -244,6 +244,29 @@ TEST_F(SimulateCommandTest, StopsWithAnErrorWhenTheMotionIsNotFinite) {
   EXPECT_EQ(table("run/energies.csv").texts("status").back(), "not-finite");
 }
 
+TEST_F(SimulateCommandTest, KeepsItsReportsWhenTheFirstStepIsNotFinite) {
+  reduce_bar();
+  write("burst.json", R"({"duration": 1, "step": 0.05, "forces": [{"node": 80, "force": [1e250, 0, 0]}]})");
+  const Outcome outcome = supple({"simulate", "bar.supple", "--scene", "burst.json", "-o", "run", "--json", "report.json"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("step 1 "), HasSubstr("finite")));
+  EXPECT_EQ(json::parse(read("report.json"))["status"], "not-finite");
+  EXPECT_EQ(read("run/report.json"), read("report.json"));
+}
+
+TEST_F(SimulateCommandTest, ComparesWithAReferenceAtRest) {
+  reduce_bar();
+  write("rest.json", R"({"duration": 0.5, "step": 0.05})");
+  write("load.json", R"({"duration": 0.5, "step": 0.05, "gravity": [0, -0.1, 0]})");
+  ASSERT_EQ(supple({"simulate", "bar.supple", "--scene", "rest.json", "-o", "rest"}).exit_code, 0);
+  ASSERT_EQ(supple({"simulate", "bar.supple", "--scene", "load.json", "-o", "load"}).exit_code, 0);
+  const Outcome outcome = supple({"compare", "load", "rest", "-o", "comparison", "--json", "-"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("does not move"));
+  EXPECT_TRUE(outcome.json()["position_error"]["relative"].is_null());  // nothing to relate it to
+  EXPECT_EQ(report({"compare", "rest", "rest"})["position_error"]["relative"], 0.0);
+}
+
 TEST_F(SimulateCommandTest, WarnsOfStepsThatMissTheTolerance) {
   reduce_bar();
   write("scene.json", R"({"gravity": [0, -1, 0], "solver": {"max_iterations": 1, "tolerance": 1e-9}})");

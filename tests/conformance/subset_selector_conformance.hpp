@@ -255,6 +255,11 @@ TYPED_TEST_P(SubsetSelectorConformance, RefusesNumbersThatAreNotFinite) {
   EXPECT_THROW(TypeParam{}(DenseProblem(A, b), asked), InputError);
 }
 
+TYPED_TEST_P(SubsetSelectorConformance, RefusesAnRhsWhoseSquareIsLost) {
+  const DenseProblem problem(1e-170 * this->matrix(), Vector::Constant(this->rows, 1e-170));
+  EXPECT_THROW(TypeParam{}(problem, this->request(5)), InputError);
+}
+
 TYPED_TEST_P(SubsetSelectorConformance, RefusesRequestsThatMakeNoSense) {
   const DenseProblem problem = this->problem();
   const auto refused = [&](auto&& change) {
@@ -293,6 +298,7 @@ REGISTER_TYPED_TEST_SUITE_P(SubsetSelectorConformance, AnswersSoundly,
                             NeedsNoSizeForATargetError, ChoosesOneColumn, TakesAllColumnsOfASmallProblem,
                             BearsASizeBeyondTheRank, NeedsNothingWhereBIsZero, NeverTakesAZeroColumn,
                             BearsCopiesOfColumns, BearsColumnsOfVeryDifferentScale,
+                            RefusesAnRhsWhoseSquareIsLost,
                             RefusesNumbersThatAreNotFinite, RefusesRequestsThatMakeNoSense,
                             AsksForHeldOutErrors);
 

@@ -51,7 +51,7 @@ TEST(Unit, QuantitiesAreNumbersWithOrWithoutUnit) {
   EXPECT_DOUBLE_EQ(parse_quantity("-3e-2m", "cm"), -3);
   EXPECT_DOUBLE_EQ(parse_quantity("+7", "kg"), 7);
   EXPECT_DOUBLE_EQ(parse_quantity("0.3", ""), 0.3);
-  for (const char* text : {"", "Pa", "nan Pa", "1e999", "inf", "2 kg", "1 2", "--1", "1e308 GPa"})
+  for (const char* text : {"", "Pa", "nan Pa", "1e999", "inf", "2 kg", "1 2", "--1", "+-1", "-+1", "1e308 GPa"})
     EXPECT_THROW(parse_quantity(text, "Pa"), InputError) << text;
 }
 

@@ -162,10 +162,15 @@ TEST(Reduce, HandlesAMaterialThatIsUndefinedForInvertedTets) {
   EXPECT_EQ(reduced.report.shrunk_poses, reduced.report.inverted_poses);
   EXPECT_THAT(reduced.report.notes, testing::Contains(testing::HasSubstr("inverted tets")));
   EXPECT_LT(reduced.report.training_error, 0.4);
-  // poses that somebody brings along are not touched, but refused by their number
+  // poses that somebody brings along, too; but there is nothing to draw in their place
   options.given_poses = Matrix::Zero(36, 3);
   options.given_poses.row(5).setLinSpaced(1, 1000);
-  EXPECT_THROW((void)reduce(bar_solid("mooney-rivlin"), options), InputError);
+  options.poses.inverted = InvertedPoses::Redraw;
+  const Reduced given(bar_solid("mooney-rivlin"), options);
+  EXPECT_GE(given.report.shrunk_poses, 2);
+  EXPECT_EQ(given.report.redrawn_poses, 0);
+  options.poses.inverted = InvertedPoses::Keep;
+  EXPECT_THROW((void)reduce(bar_solid("mooney-rivlin"), options), std::invalid_argument);
 }
 
 TEST(Reduce, HandlesTwoMaterials) {

@@ -83,6 +83,19 @@ TEST(Reduce, RefusesSelectorsThatGiveNegativeWeights) {
   EXPECT_THROW((void)reduce(bar_solid(), options), SolverError);
 }
 
+TEST(SelectionStudy, DeformsFreeObjectsInsteadOfPushingThemAway) {
+  Solid free = bar_solid();
+  free.fixed_nodes = {};
+  ReduceOptions options = quick();
+  options.modes = 9;
+  const SelectionStudy some(free, options, {{.name = "pull", .steps = 40}});
+  EXPECT_NEAR(some.largest_displacements()[0], 0.25, 0.05);
+  const SelectionMeasure few = some.measure(select_by_name("nn-sp", some.problem(), 12, 1)),
+                         many = some.measure(select_by_name("nn-sp", some.problem(), 70, 1));
+  EXPECT_GT(few.trajectory_errors[0], 1e-3);  // a translation would be exact
+  EXPECT_LT(many.trajectory_errors[0], few.trajectory_errors[0]);
+}
+
 TEST(PullTest, GivesTheSameMotionsWithOneThreadAndTwo) {
   const Selection selection = select("nn-sp", 30);
   set_num_threads(1);
