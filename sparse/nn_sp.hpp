@@ -20,9 +20,9 @@ namespace supple {
 struct NnSp {
   /// Stop at this relative error, if the request has no larger one.
   double tolerance = 0;
-  /// More still improve: doubling them lowers the error by 5 to 10 %.
-  Index max_iterations = 40;
-  /// c/s. More costs more columns and gains little.
+  /// 0: 40, or 6000 / s where s is so small that they cost little. Doubling them lowers the error by 5 to 10 %.
+  Index max_iterations = 0;
+  /// c/s, but at least 500 columns. More costs more columns and gains little.
   double candidates_per_size = 5;
   /// Share of s that each iteration tries to exchange, but at least 100 columns, which cost nothing where s is small.
   /// A quarter takes a third of the time for 10 to 20 % more error and a trajectory twice as far off.
@@ -37,7 +37,8 @@ struct NnSp {
     require(added_per_size > 0, "added_per_size is not positive, expected about 1");
     if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
     SelectionRun<P> run(problem, request);
-    const Index s = run.rules.size(), c = share(candidates_per_size, s);
+    const Index s = run.rules.size(), c = std::max(share(candidates_per_size, s), Index{500});
+    const Index limit = max_iterations > 0 ? max_iterations : std::max(Index{40}, 6000 / s);
     const Index added = std::max(share(added_per_size, s), Index{100});
     Random random(seed);
 
@@ -50,9 +51,9 @@ struct NnSp {
     const auto finish = [&](Status status, const char* reason) {
       return run.finish(S, status, iterations, reason);
     };
-    for (; iterations < max_iterations; ++iterations) {
+    for (; iterations < limit; ++iterations) {
       if (run.met(tolerance)) return finish(Status::Converged, "target error reached");
-      run.tell(iterations, max_iterations);
+      run.tell(iterations, limit);
 
       const Index old_size = S.size(), groups = s - old_size + added;
       const std::vector<Index> rest = run.rules.eligible_without(S.indices());
