@@ -53,8 +53,8 @@ int main(int argc, char** argv) {
       if (name != "all")
         report(std::string(name), s,
                [&](std::uint64_t seed) { return select_by_name(name, training, s, seed); });
-    report("nn-sp add 1", s,
-           [&](std::uint64_t seed) { return NnSp{.added_per_size = 1, .seed = seed}(training, s); });
+    report("nn-sp 10 iterations", s,
+           [&](std::uint64_t seed) { return NnSp{.max_iterations = 10, .seed = seed}(training, s); });
     report("greedy T_s 10", s, [&](std::uint64_t seed) {
       return GreedyCubature{.subset_groups = 10, .seed = seed}(training, s);
     });
