@@ -34,21 +34,27 @@ inline double relative(double norm, double scale) {
   return norm == 0 ? 0 : norm / scale;
 }
 
-/// One step from u along −H⁻¹ g, shortened until φ decreases enough (Armijo) unless the full step already
-/// reduces ‖g‖. H is shifted by multiples of the metric until it is positive definite. g is updated to the
-/// new u. Returns false if no decrease was found (u stays).
+/// H(u), shifted by multiples of the metric until it is positive definite, into the solver. False if that fails.
 template <SmoothObjective O>
-bool newton_step(O& objective, SpdSolver<typename O::MatrixType>& solver, typename O::MatrixType& H,
-                 Vector& u, Vector& g) {
+bool factorize_hessian(O& objective, SpdSolver<typename O::MatrixType>& solver, typename O::MatrixType& H, VectorIn u) {
   objective.hessian(u, H);
   const Vector& metric = objective.metric();
-  double shift = 0;
-  while (!solver.factorize(H)) {
+  for (double shift = 0; !solver.factorize(H);) {
     const double more = shift == 0 ? 2e-3 * H.norm() / metric.norm() : 9 * shift;
     if (!(more > 0) || !std::isfinite(more)) return false;
     add_diagonal(H, more * metric);
     shift += more;
   }
+  return true;
+}
+
+/// One step from u along −H⁻¹ g, shortened until φ decreases enough (Armijo) unless the full step already
+/// reduces ‖g‖, with H shifted as above. g is updated to the
+/// new u. Returns false if no decrease was found (u stays).
+template <SmoothObjective O>
+bool newton_step(O& objective, SpdSolver<typename O::MatrixType>& solver, typename O::MatrixType& H,
+                 Vector& u, Vector& g) {
+  if (!factorize_hessian(objective, solver, H, u)) return false;
   const Vector step = -solver.solve(g);
   const double slope = g.dot(step);
   if (!std::isfinite(slope) || slope >= 0) return false;

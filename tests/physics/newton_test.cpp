@@ -1,4 +1,5 @@
 #include <physics/broyden.hpp>
+#include <physics/equilibrium.hpp>
 #include <physics/full_system.hpp>
 #include <physics/mass.hpp>
 #include <physics/newton.hpp>
@@ -6,7 +7,6 @@
 #include <tests/support/meshes.hpp>
 #include <tests/support/near.hpp>
 #include <tests/support/random_vectors.hpp>
-#include <tests/support/static_problem.hpp>
 
 #include <gtest/gtest.h>
 
@@ -38,8 +38,7 @@ struct Cantilever {
   TetMesh mesh = perturbed(kuhn_box(4, 1, 1, 0.1), 0.005, 3);
   System system{TetElasticity<Material>(mesh, Material<double>::from({.young = 3e4, .poisson = 0.3})),
                 lumped_mass(mesh, 1000.0), nodes_where(mesh, [](const Point& x) { return x[0] < 0.05; })};
-  StaticProblem<System> problem{
-      system, system.project({.gravity = {0, -9.81, 0}, .forces = {}, .springs = {}}).force};
+  Equilibrium<System> problem{system, system.project({.gravity = {0, -9.81, 0}})};
 };
 
 template <typename Fixture>
@@ -87,8 +86,7 @@ TYPED_TEST(StaticTest, NewtonFindsTheEquilibriumUnderGravityQuadratically) {
 TYPED_TEST(StaticTest, BroydenAgreesWithNewton) {
   // a fifth of the weight: under all of it the bar has several equilibria
   const auto& system = this->cantilever.system;
-  StaticProblem<typename TypeParam::System> problem(
-      system, system.project({.gravity = {0, -2, 0}, .forces = {}, .springs = {}}).force);
+  Equilibrium<typename TypeParam::System> problem(system, system.project({.gravity = {0, -2, 0}}));
   SpdSolver<SparseMatrix> newton, broyden;
   Vector u = Vector::Zero(system.dim()), w = u;
   (void)newton_minimize(problem, newton, u, {.tolerance = 1e-11, .max_iterations = 40});
@@ -102,8 +100,7 @@ TYPED_TEST(StaticTest, BroydenAgreesWithNewton) {
 TYPED_TEST(StaticTest, BroydenKeepsTheJacobianWhereItHelps) {
   // a hundredth of the weight: nearly linear, so the Jacobian at rest does
   const auto& system = this->cantilever.system;
-  StaticProblem<typename TypeParam::System> light(
-      system, system.project({.gravity = {0, -0.01, 0}, .forces = {}, .springs = {}}).force);
+  Equilibrium<typename TypeParam::System> light(system, system.project({.gravity = {0, -0.01, 0}}));
   SpdSolver<SparseMatrix> solver;
   ASSERT_TRUE(solver.factorize(system.rest_stiffness()));
   Vector u = Vector::Zero(system.dim());
@@ -187,7 +184,7 @@ TEST(Newton, ConvergesFromACompressedStateWithAnIndefiniteTangent) {
       c.system.restrict(affine_displacement(c.mesh.nodes, Point(0.6, 1, 1).asDiagonal().toDenseMatrix()));
   SpdSolver<SparseMatrix> solver;
   ASSERT_FALSE(solver.factorize(c.system.stiffness(squeezed))) << "the test needs an indefinite tangent";
-  StaticProblem<FullSystem<TetElasticity<StVenantKirchhoff>>> free(c.system, Vector::Zero(c.system.dim()));
+  Equilibrium<FullSystem<TetElasticity<StVenantKirchhoff>>> free(c.system, {Vector::Zero(c.system.dim()), {}});
   Vector u = squeezed;
   const double before = free.value(u);
   // no load, so ‖f‖ / ‖f‖ = 1 and the relative residual says nothing: all it can do is go down to rounding

@@ -1,0 +1,136 @@
+#pragma once
+/// \file The BFGS method: quasi-Newton minimisation from a given inverse Hessian.
+
+#include <physics/newton.hpp>
+
+#include <vector>
+
+namespace supple {
+
+struct BfgsOptions {
+  double tolerance = 1e-6;     ///< relative residual ‖g‖ / scale to reach
+  Index max_iterations = 200;  ///< steps; each takes one or a few evaluations of value and gradient
+  /// After so many steps the Hessian is computed and factorised afresh, shifted if it is not definite; 0: never, as
+  /// the paper does. In large motions the Hessian at rest is a poor start.
+  Index refresh_after = 0;
+};
+
+struct BfgsReport : Report {
+  Index evaluations = 0;  ///< of value and gradient
+  Index refreshes = 0;    ///< Hessians computed
+};
+
+namespace detail {
+
+/// The pairs (s, y) of the steps so far, and the product of the inverse Hessian that follows from them.
+class BfgsMemory {
+ public:
+  /// \param y  change of the gradient over the step s, sᵀy > 0.
+  void add(Vector s, Vector y) {
+    inverse_curvature_.push_back(1 / s.dot(y));
+    s_.push_back(std::move(s));
+    y_.push_back(std::move(y));
+  }
+  void clear() {
+    s_.clear();
+    y_.clear();
+    inverse_curvature_.clear();
+  }
+  Index size() const { return static_cast<Index>(s_.size()); }
+
+  /// H g by the two-loop recursion (Nocedal 1980) over all pairs; H₀ is what the solver holds.
+  template <typename Solver>
+  Vector inverse_times(const Solver& solver, Vector g) const {
+    std::vector<double> a(s_.size());
+    for (std::size_t k = s_.size(); k-- > 0;) {
+      a[k] = inverse_curvature_[k] * s_[k].dot(g);
+      g -= a[k] * y_[k];
+    }
+    Vector d = solver.solve(g);
+    for (std::size_t k = 0; k < s_.size(); ++k) d += (a[k] - inverse_curvature_[k] * y_[k].dot(d)) * s_[k];
+    return d;
+  }
+
+ private:
+  std::vector<Vector> s_, y_;
+  std::vector<double> inverse_curvature_;
+};
+
+}  // namespace detail
+
+/// Improves u until the residual ‖g‖ / scale is at most the tolerance. The matrix never appears: steps are kept and
+/// applied to what `solver` holds, O(k d) after k steps beside one solve (Dennis & Schnabel 1987, Sec. 9; Nocedal &
+/// Wright 2006, Sec. 7.2). Steps satisfy the Wolfe conditions, or their approximate form (Hager & Zhang 2005) where
+/// values differ by rounding only.
+/// \param solver  holds a factorised matrix close to the Hessian, such as the one at rest.
+template <SmoothObjective O>
+BfgsReport bfgs_minimize(O& objective, SpdSolver<typename O::MatrixType>& solver, Vector& u,
+                         const BfgsOptions& options = {}) {
+  BfgsReport report;
+  detail::BfgsMemory memory;
+  typename O::MatrixType H;
+  Vector g(u.size()), g_trial(u.size()), trial(u.size());
+  objective.gradient(u, g);
+  double value = objective.value(u), scale = objective.scale(u);
+  report.evaluations = 1;
+  const auto finish = [&](Status status) {
+    report.status = status;
+    return report;
+  };
+  for (;;) {
+    report.residual = detail::relative(g.norm(), scale);
+    if (!std::isfinite(report.residual) || !std::isfinite(value)) return finish(Status::NotFinite);
+    if (report.residual <= options.tolerance) return finish(Status::Converged);
+    if (report.iterations == options.max_iterations) return finish(Status::MaxIterations);
+    ++report.iterations;
+    if (options.refresh_after > 0 && memory.size() >= options.refresh_after) {
+      if (!detail::factorize_hessian(objective, solver, H, u)) return finish(Status::Stagnated);
+      memory.clear();
+      ++report.refreshes;
+    }
+
+    Vector step = -memory.inverse_times(solver, g);
+    double slope = g.dot(step);
+    if (!(slope < 0)) {  // rounding has spoilt the memory
+      memory.clear();
+      step = -solver.solve(g);
+      slope = g.dot(step);
+      if (!(slope < 0)) return finish(Status::Stagnated);
+    }
+    // the step length by bisection and doubling between what is too long and what is too short
+    const double rounding = 1e-13 * std::abs(value);
+    double t = 1, low = 0, high = std::numeric_limits<double>::infinity(), value_trial = 0;
+    bool found = false;
+    for (int attempt = 0; attempt < 40 && !found; ++attempt) {
+      trial = u + t * step;
+      objective.gradient(trial, g_trial);
+      value_trial = objective.value(trial);
+      ++report.evaluations;
+      const double slope_trial = g_trial.dot(step);
+      const bool decreases = value_trial <= value + 1e-4 * t * slope ||
+                             (value_trial <= value + rounding && slope_trial <= -0.8 * slope);
+      if (!decreases || !std::isfinite(slope_trial))
+        high = t;
+      else if (slope_trial < 0.9 * slope)
+        low = t;
+      else
+        found = true;
+      if (!found) t = std::isfinite(high) ? 0.5 * (low + high) : 2 * t;
+    }
+    if (!found) {
+      if (memory.size() == 0) {
+        objective.gradient(u, g);
+        return finish(Status::Stagnated);
+      }
+      memory.clear();  // once more along the preconditioned gradient
+      continue;
+    }
+    scale = objective.scale(trial);
+    value = value_trial;
+    if ((g_trial - g).dot(trial - u) > 0) memory.add(trial - u, g_trial - g);
+    u.swap(trial);
+    g.swap(g_trial);
+  }
+}
+
+}  // namespace supple
