@@ -13,6 +13,29 @@
 
 namespace supple {
 
+namespace detail {
+
+template <typename Real>
+Vector3<Real> cross(const Vector3<Real>& a, const Vector3<Real>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+template <typename Real>
+Real dot(const Vector3<Real>& a, const Vector3<Real>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+template <typename Real>
+Real norm(const Vector3<Real>& a) {
+  using std::sqrt;
+  return sqrt(dot(a, a));
+}
+template <typename Real>
+Real at_least(double bound, const Real& x) {
+  using std::max;
+  return max(x, Real(bound));
+}
+
+}  // namespace detail
+
 /// Discrete shells. One component an interior edge ("flap"), in order of interior_edges(); it reads the nodes
 /// a, b of the edge and c, d of the triangles (a, b, c) and (b, a, d). With θ the angle between the normals
 /// of the two, positive where the surface is convex on the side of its normals, and rest values barred:
@@ -59,20 +82,56 @@ class DiscreteShell {
     /// Lengths and areas below are taken for this: far below any mesh, and its powers are still numbers.
     static constexpr double smallest = 1e-100;
 
+    /// An edge as it is now. Its square is compared with that at rest through the displacements, which keeps
+    /// the digits of small ones: |e|² − |ē|² = Δ · (2 e − Δ) with Δ = e − ē.
+    struct Edge {
+      Vec now, change;  // e, Δ
+      Real rest_length;
+
+      Real growth() const { return detail::dot(change, Vec(now + (now - change))); }  // |e|² − |ē|²
+      Real stretch(const Real& length) const { return growth() / (length + rest_length); }
+    };
     /// A flap as it is now, seen from a.
     struct Shape {
-      Vec e, c, d;                  // b − a, c − a, d − a
-      Vec n_c, n_d;                 // e × c, the normal of abc, and e × d, that of bad reversed
-      Real length, inverse_length;  // |e|
+      Vec e, c, d;                       // b − a, c − a, d − a
+      Vec change_e, change_c, change_d;  // since rest
+      Vec n_c, n_d;                      // e × c, the normal of abc, and e × d, that of bad reversed
+      Real length;                       // |e|
 
       Shape(const Term& term, const Local<12, Real>& u);
+      /// |n|² − |n̄|² of the normal n = e × p, likewise from displacements.
+      Real growth(const Vec& n, const Vec& p, const Vec& change_p) const {
+        const Vec change_n = detail::cross(e, change_p) + detail::cross(change_e, Vec(p - change_p));
+        return detail::dot(change_n, Vec(n + (n - change_n)));
+      }
     };
+    Edge inner_edge(const Shape& s) const { return {s.e, s.change_e, rest_length[0]}; }
+    /// Edge k = 1 … 4: ac, bc, ad, bd.
+    Edge outer_edge(const Shape& s, int k) const {
+      const Vec &p = k < 3 ? s.c : s.d, &change = k < 3 ? s.change_c : s.change_d;
+      if (k % 2 == 1) return {p, change, rest_length[k]};
+      return {p - s.e, change - s.change_e, rest_length[k]};
+    }
     /// One of the two triangles in the frame of its own: p − a = t e + h b̂ with p its node off the edge.
     struct Wing;
 
     bool has_boundary() const { return any_positive(spring[1] + spring[2] + spring[3] + spring[4]); }
     bool resists_area() const { return any_positive(area_spring[0] + area_spring[1]); }
     Real bend(const Shape& shape) const;
+    /// Few flaps are at the boundary: kept out of the way of the others.
+    [[gnu::noinline]] Local<12, Real> boundary_force(const Shape& shape) const;
+    Local<12, Real> area_force(const Shape& shape) const;
+    /// The force on all corners: that on a balances the others.
+    static Local<12, Real> on_corners(const Vec& f_b, const Vec& f_c, const Vec& f_d) {
+      Local<12, Real> f;
+      for (int i = 0; i < 3; ++i) {
+        f[i] = -(f_b[i] + f_c[i] + f_d[i]);
+        f[3 + i] = f_b[i];
+        f[6 + i] = f_c[i];
+        f[9 + i] = f_d[i];
+      }
+      return f;
+    }
   };
 
   /// \param materials  one for all triangles, or one a triangle (say, of varying thickness): an edge takes
@@ -100,40 +159,19 @@ class DiscreteShell {
   std::vector<Term<double>> terms_;
 };
 
-namespace detail {
-
-template <typename Real>
-Vector3<Real> cross(const Vector3<Real>& a, const Vector3<Real>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-template <typename Real>
-Real dot(const Vector3<Real>& a, const Vector3<Real>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <typename Real>
-Real norm(const Vector3<Real>& a) {
-  using std::sqrt;
-  return sqrt(dot(a, a));
-}
-template <typename Real>
-Real at_least(double bound, const Real& x) {
-  using std::max;
-  return max(x, Real(bound));
-}
-
-}  // namespace detail
-
 template <typename Real>
 DiscreteShell::Term<Real>::Shape::Shape(const Term& term, const Local<12, Real>& u) {
   for (int i = 0; i < 3; ++i) {
-    e[i] = term.rest[i] + (u[3 + i] - u[i]);
-    c[i] = term.rest[3 + i] + (u[6 + i] - u[i]);
-    d[i] = term.rest[6 + i] + (u[9 + i] - u[i]);
+    change_e[i] = u[3 + i] - u[i];
+    change_c[i] = u[6 + i] - u[i];
+    change_d[i] = u[9 + i] - u[i];
+    e[i] = term.rest[i] + change_e[i];
+    c[i] = term.rest[3 + i] + change_c[i];
+    d[i] = term.rest[6 + i] + change_d[i];
   }
   n_c = detail::cross(e, c);
   n_d = detail::cross(e, d);
   length = detail::norm(e);
-  inverse_length = Real(1) / detail::at_least(smallest, length);
 }
 
 template <typename Real>
@@ -147,66 +185,69 @@ Real DiscreteShell::Term<Real>::bend(const Shape& shape) const {
 template <typename Real>
 Real DiscreteShell::Term<Real>::energy(const Local<12, Real>& u) const {
   const Shape shape(*this, u);
-  const Real angle = bend(shape), stretch = shape.length - rest_length[0];
+  const Real angle = bend(shape), stretch = inner_edge(shape).stretch(shape.length);
   Real twice = bending * angle * angle + spring[0] * stretch * stretch;
-  if (has_boundary()) {
-    const std::array<Vec, 4> outer{shape.c, shape.c - shape.e, shape.d, shape.d - shape.e};
-    for (int k = 0; k < 4; ++k) {
-      const Real change = detail::norm(outer[k]) - rest_length[k + 1];
-      twice += spring[k + 1] * change * change;
+  if (has_boundary())
+    for (int k = 1; k < 5; ++k) {
+      const Edge edge = outer_edge(shape, k);
+      const Real change = edge.stretch(detail::norm(edge.now));
+      twice += spring[k] * change * change;
     }
-  }
   if (resists_area()) {
-    const Real change_c = detail::norm(shape.n_c) - rest_normal[0];
-    const Real change_d = detail::norm(shape.n_d) - rest_normal[1];
-    twice += area_spring[0] * change_c * change_c + area_spring[1] * change_d * change_d;
+    const auto spread = [&](int k, const Vec& n, const Vec& p, const Vec& change_p) {
+      const Real change = shape.growth(n, p, change_p) / (detail::norm(n) + rest_normal[k]);
+      twice += area_spring[k] * change * change;
+    };
+    spread(0, shape.n_c, shape.c, shape.change_c);
+    spread(1, shape.n_d, shape.d, shape.change_d);
   }
   return Real(0.5) * twice;
 }
 
 template <typename Real>
 Local<12, Real> DiscreteShell::Term<Real>::force(const Local<12, Real>& u) const {
-  using detail::at_least, detail::cross, detail::dot, detail::norm;
+  using detail::at_least, detail::dot;
   const Shape shape(*this, u);
-  const Vec &e = shape.e, &c = shape.c, &d = shape.d;
-  const Real one(1);
-
   // ∂θ/∂c = −|e| n_c / |n_c|², ∂θ/∂d = |e| n_d / |n_d|², and at b what keeps rotations free
   const Real moment = bending * bend(shape) * shape.length;
-  Vec f_c = shape.n_c * (-moment / at_least(smallest * smallest, dot(shape.n_c, shape.n_c)));
-  Vec f_d = shape.n_d * (moment / at_least(smallest * smallest, dot(shape.n_d, shape.n_d)));
-  const Real inverse_square = shape.inverse_length * shape.inverse_length;
-  Vec f_b = e * (spring[0] * (one - rest_length[0] * shape.inverse_length)) -
-            (f_c * (dot(c, e) * inverse_square) + f_d * (dot(d, e) * inverse_square));
-
-  if (has_boundary()) {
-    const auto pull = [&](int k, const Vec& edge) -> Vec {
-      return edge * (spring[k] * (one - rest_length[k] / at_least(smallest, norm(edge))));
-    };
-    const Vec f_bc = pull(2, c - e), f_bd = pull(4, d - e);
-    f_c += pull(1, c) + f_bc;
-    f_d += pull(3, d) + f_bd;
-    f_b -= f_bc + f_bd;
-  }
-  if (resists_area()) {
-    const auto spread = [&](int k, const Vec& n, const Vec& p, Vec& f_p) {
-      const Real size = norm(n);
-      const Vec tension = n * (area_spring[k] * (size - rest_normal[k]) / at_least(smallest, size));
-      f_p += cross(tension, e);
-      f_b += cross(p, tension);
-    };
-    spread(0, shape.n_c, c, f_c);
-    spread(1, shape.n_d, d, f_d);
-  }
-
-  Local<12, Real> f;
-  for (int i = 0; i < 3; ++i) {
-    f[i] = -(f_b[i] + f_c[i] + f_d[i]);
-    f[3 + i] = f_b[i];
-    f[6 + i] = f_c[i];
-    f[9 + i] = f_d[i];
-  }
+  const Vec f_c = shape.n_c * (-moment / at_least(smallest * smallest, dot(shape.n_c, shape.n_c)));
+  const Vec f_d = shape.n_d * (moment / at_least(smallest * smallest, dot(shape.n_d, shape.n_d)));
+  // one division for 1 / |e|² and (|e| − |ē|) / |e|
+  const Real sum = shape.length + rest_length[0], square = shape.length * shape.length;
+  const Real inverse = Real(1) / at_least(smallest * smallest, square * sum);
+  const Real inverse_square = inverse * sum;
+  const Vec f_b =
+      shape.e * (spring[0] * inner_edge(shape).growth() * shape.length * inverse) -
+      (f_c * (dot(shape.c, shape.e) * inverse_square) + f_d * (dot(shape.d, shape.e) * inverse_square));
+  Local<12, Real> f = on_corners(f_b, f_c, f_d);
+  if (has_boundary()) f += boundary_force(shape);
+  if (resists_area()) f += area_force(shape);
   return f;
+}
+
+template <typename Real>
+Local<12, Real> DiscreteShell::Term<Real>::boundary_force(const Shape& shape) const {
+  const auto pull = [&](int k) -> Vec {
+    const Edge edge = outer_edge(shape, k);
+    const Real length = detail::norm(edge.now);
+    return edge.now *
+           (spring[k] * edge.growth() / detail::at_least(smallest, length * (length + rest_length[k])));
+  };
+  const Vec ac = pull(1), bc = pull(2), ad = pull(3), bd = pull(4);
+  return on_corners(-bc - bd, ac + bc, ad + bd);
+}
+
+template <typename Real>
+Local<12, Real> DiscreteShell::Term<Real>::area_force(const Shape& shape) const {
+  const auto tension = [&](int k, const Vec& n, const Vec& p, const Vec& change_p) -> Vec {
+    const Real size = detail::norm(n);
+    return n * (area_spring[k] * shape.growth(n, p, change_p) /
+                detail::at_least(smallest, size * (size + rest_normal[k])));
+  };
+  const Vec at_c = tension(0, shape.n_c, shape.c, shape.change_c);
+  const Vec at_d = tension(1, shape.n_d, shape.d, shape.change_d);
+  return on_corners(detail::cross(shape.c, at_c) + detail::cross(shape.d, at_d), detail::cross(at_c, shape.e),
+                    detail::cross(at_d, shape.e));
 }
 
 template <typename Real>
@@ -215,9 +256,10 @@ struct DiscreteShell::Term<Real>::Wing {
   Real t, h;    // h the height over the edge
   Real inverse_height, inverse_length;
 
-  Wing(const Shape& shape, const Vec& p, const Vec& normal)
-      : e(shape.e * shape.inverse_length), inverse_length(shape.inverse_length) {
+  Wing(const Shape& shape, const Vec& p, const Vec& normal) {
     const Real size = detail::norm(normal), inverse = Real(1) / detail::at_least(smallest, size);
+    inverse_length = Real(1) / detail::at_least(smallest, shape.length);
+    e = shape.e * inverse_length;
     n = normal * inverse;
     b = detail::cross(n, e);
     t = detail::dot(p, e) * inverse_length;
@@ -266,13 +308,14 @@ LocalMatrix<12, Real> DiscreteShell::Term<Real>::stiffness(const Local<12, Real>
   }
 
   // length: k (l̄ ê êᵀ + (l − l̄) I) / l
-  const auto add_edge = [&](int k, const Vec& edge, auto&& add) {
-    const Real inverse = Real(1) / at_least(smallest, norm(edge));
-    const Real ratio = rest_length[k] * inverse;
-    const Real along = spring[k] * ratio * inverse * inverse, across = spring[k] * (Real(1) - ratio);
+  const auto add_edge = [&](int k, const Edge& edge, auto&& add) {
+    const Vec& now = edge.now;
+    const Real length = norm(now), inverse = Real(1) / at_least(smallest, length);
+    const Real along = spring[k] * rest_length[k] * inverse * inverse * inverse;
+    const Real across = spring[k] * edge.stretch(length) * inverse;
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i < 3; ++i) {
-        Real entry = along * edge[i] * edge[j];
+        Real entry = along * now[i] * now[j];
         if (i == j) entry += across;
         add(i, j, entry);
       }
@@ -280,13 +323,13 @@ LocalMatrix<12, Real> DiscreteShell::Term<Real>::stiffness(const Local<12, Real>
   const auto add_diagonal = [&](int row, int i, int j, const Real& entry) {
     if (i <= j) K(row + i, row + j) += entry;
   };
-  add_edge(0, shape.e, [&](int i, int j, const Real& entry) { add_diagonal(3, i, j, entry); });
+  add_edge(0, inner_edge(shape), [&](int i, int j, const Real& entry) { add_diagonal(3, i, j, entry); });
   if (has_boundary())
     for (int w = 0; w < 2; ++w) {
       const int p = 6 + 3 * w;
-      const Vec& at = w == 0 ? shape.c : shape.d;
-      add_edge(1 + 2 * w, at, [&](int i, int j, const Real& entry) { add_diagonal(p, i, j, entry); });
-      add_edge(2 + 2 * w, at - shape.e, [&](int i, int j, const Real& entry) {
+      add_edge(1 + 2 * w, outer_edge(shape, 1 + 2 * w),
+               [&](int i, int j, const Real& entry) { add_diagonal(p, i, j, entry); });
+      add_edge(2 + 2 * w, outer_edge(shape, 2 + 2 * w), [&](int i, int j, const Real& entry) {
         add_diagonal(3, i, j, entry);
         add_diagonal(p, i, j, entry);
         K(3 + i, p + j) -= entry;
@@ -298,7 +341,9 @@ LocalMatrix<12, Real> DiscreteShell::Term<Real>::stiffness(const Local<12, Real>
     for (int w = 0; w < 2; ++w) {
       const Wing& wing = wings[w];
       const int p = 6 + 3 * w;
-      const Real k = area_spring[w], tension = k * (shape.length * wing.h - rest_normal[w]);
+      const Real growth = w == 0 ? shape.growth(shape.n_c, shape.c, shape.change_c)
+                                 : shape.growth(shape.n_d, shape.d, shape.change_d);
+      const Real k = area_spring[w], tension = k * growth / (shape.length * wing.h + rest_normal[w]);
       const Vec q_p = wing.b * shape.length, q_b = wing.e * wing.h - q_p * wing.t;
       const Real n_pp = tension * shape.length * wing.inverse_height, n_bp = n_pp * wing.t;
       const Real n_bb = n_bp * wing.t + tension * wing.h * wing.inverse_length;

@@ -14,7 +14,7 @@ ShellMaterial ShellMaterial::from(const IsotropicModuli& moduli, double thicknes
   const double nu_m = std::max(nu, 1.0 / 3.0);
   return {.bending = D / 6,
           .stretch = 4 * E * h / (1 + nu_m),
-          .area = E * h * (3 * nu_m - 1) / (2 * (1 - nu_m * nu_m))};
+          .area = E * h * std::max(3 * nu_m - 1, 0.0) / (2 * (1 - nu_m * nu_m))};  // no −0 by rounding
 }
 
 void ShellMaterial::check() const {
