@@ -41,10 +41,9 @@ Real at_least(double bound, const Real& x) {
 /// of the two, positive where the surface is convex on the side of its normals, and rest values barred:
 ///   bending   k_B · 3 |ē|² / (Ā₁ + Ā₂) · (θ − θ̄)²
 ///   length    ½ k_L Ā_e (|e| / |ē| − 1)²  of the edge, Ā_e a third of the areas beside it,
-///   area      ½ k_A Ā (A / Ā − 1)²        of both triangles, shared equally by the one to three flaps of
-///   each;
-/// the length term of a boundary edge is likewise shared by the flaps of its triangle. The sum over all flaps
-/// counts every edge and triangle once.
+///   area      ½ k_A Ā (A / Ā − 1)²        of both triangles.
+/// The one to three flaps of a triangle share its area term equally, and the length terms of its boundary
+/// edges. So the sum over all flaps counts every edge and triangle once.
 ///
 /// The difference of angles is taken modulo 2π in (−π, π]: nothing jumps where a hinge folds through π; the
 /// kink that an energy of angles must have is where a hinge stands opposite to its rest angle. Energy and
