@@ -1,15 +1,13 @@
 #include <core/check.hpp>
 #include <io/builtin_meshes.hpp>
+#include <io/builtin_spec.hpp>
 #include <io/isosurface_stuffing.hpp>
 #include <io/octopus.hpp>
 
 #include <algorithm>
-#include <charconv>
 
 namespace supple {
 namespace {
-
-constexpr double max_size = 3e7;  // tets, or cells of a lattice
 
 /// The kept cells of a box lattice, six tets each: one for every order in which a path along the axes leads
 /// from the lowest to the highest corner of a cell. Node (i, j, k) lies at (i, j, k) / divisor.
@@ -54,47 +52,7 @@ TetMesh kuhn_mesh(const std::array<Index, 3>& cells, Index divisor, const Keep& 
   return mesh;
 }
 
-/// Positive whole numbers between separators; empty if the text is anything else.
-std::vector<Index> positive_numbers(std::string_view text, char separator) {
-  std::vector<Index> numbers;
-  while (true) {
-    const std::size_t end = std::min(text.find(separator), text.size());
-    Index number = 0;
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + end, number);
-    if (error != std::errc() || rest != text.data() + end || number < 1) return {};
-    numbers.push_back(number);
-    if (end == text.size()) return numbers;
-    text.remove_prefix(end + 1);
-  }
-}
-
-/// A text such as "bar:80x20x10", and how it fails.
-struct Spec {
-  std::string_view text, name, parameters;
-
-  explicit Spec(std::string_view spec) : text(spec), name(spec.substr(0, spec.find(':'))) {
-    if (name.size() < spec.size()) parameters = spec.substr(name.size() + 1);
-  }
-  std::vector<Index> numbers(std::size_t count, char separator, const std::string& expectation) const {
-    std::vector<Index> values = positive_numbers(parameters, separator);
-    if (values.size() != count) fail("expected " + expectation);
-    return values;
-  }
-  void expect_size(double size) const {
-    if (!(size <= max_size)) fail("more than 30 million tets or lattice cells; expected smaller numbers");
-  }
-  [[noreturn]] void fail(const std::string& message) const {
-    throw InputError(std::string(text) + ": " + message);
-  }
-};
-
-double product(const std::vector<Index>& numbers) {
-  double result = 1;
-  for (const Index n : numbers) result *= static_cast<double>(n);
-  return result;
-}
-
-TetMesh bar(const Spec& spec) {
+TetMesh bar(const BuiltinSpec& spec) {
   const std::vector<Index> cells =
       spec.numbers(3, 'x', "bar:NXxNYxNZ with numbers of cells ≥ 1, such as bar:80x20x10");
   spec.expect_size(6 * product(cells));
@@ -102,13 +60,13 @@ TetMesh bar(const Spec& spec) {
                    [](Index, Index, Index) { return true; });
 }
 
-TetMesh cube(const Spec& spec) {
+TetMesh cube(const BuiltinSpec& spec) {
   const Index n = spec.numbers(1, ',', "cube:N with N ≥ 1 cells a side, such as cube:10")[0];
   spec.expect_size(6 * product({n, n, n}));
   return kuhn_mesh({n, n, n}, n, [](Index, Index, Index) { return true; });
 }
 
-TetMesh menger(const Spec& spec) {
+TetMesh menger(const BuiltinSpec& spec) {
   const std::string expectation =
       "menger:BASE,LEVEL,SUB with BASE ≥ 3, LEVEL ≥ 1, SUB ≥ 1, such as menger:3,3,1";
   const std::vector<Index> numbers = spec.numbers(3, ',', expectation);
@@ -135,7 +93,7 @@ TetMesh menger(const Spec& spec) {
   });
 }
 
-TetMesh ball(const Spec& spec) {
+TetMesh ball(const BuiltinSpec& spec) {
   const std::vector<Index> cells = spec.numbers(1, ',', "ball:N with 4 … 130 cells across, such as ball:20");
   if (cells[0] < 4 || cells[0] > 130) spec.fail("expected 4 … 130 cells across");
   const Point corner = Point::Constant(0.5);
@@ -143,7 +101,7 @@ TetMesh ball(const Spec& spec) {
                           1 / static_cast<double>(cells[0]));
 }
 
-TetMesh octopus(const Spec& spec) {
+TetMesh octopus(const BuiltinSpec& spec) {
   Index cells = 44;
   const std::string expectation = "octopus or octopus:N with 30 … 200 cells a metre";
   if (spec.name.size() < spec.text.size()) cells = spec.numbers(1, ',', expectation)[0];
@@ -155,7 +113,7 @@ TetMesh octopus(const Spec& spec) {
 
 struct Builtin {
   std::string_view name;
-  TetMesh (*make)(const Spec&);
+  TetMesh (*make)(const BuiltinSpec&);
 };
 constexpr Builtin builtins[] = {
     {"bar", bar}, {"cube", cube}, {"menger", menger}, {"ball", ball}, {"octopus", octopus}};
@@ -169,11 +127,11 @@ const Builtin* find_builtin(std::string_view name) {
 }  // namespace
 
 bool is_builtin(std::string_view text) {
-  return find_builtin(Spec(text).name) != nullptr;
+  return find_builtin(BuiltinSpec(text).name) != nullptr;
 }
 
 TetMesh builtin_mesh(std::string_view text) {
-  const Spec spec(text);
+  const BuiltinSpec spec(text);
   const Builtin* builtin = find_builtin(spec.name);
   if (!builtin) spec.fail("is no built-in mesh; expected one of\n" + std::string(builtin_mesh_help));
   return builtin->make(spec);

@@ -1,8 +1,8 @@
 #include <io/mesh_formats.hpp>
 #include <io/mesh_reader.hpp>
+#include <io/mesh_repairs.hpp>
 
 #include <array>
-#include <cctype>
 #include <cstdio>
 #include <numeric>
 
@@ -11,21 +11,6 @@ namespace {
 
 constexpr std::string_view formats_read =
     "Gmsh .msh (2.2, 4.1), Medit .mesh, TetGen .node with .ele, VegaFEM .veg, VTK .vtk and .vtu";
-
-std::string plural(Index count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
-bool has_extension(const std::filesystem::path& path, std::string_view extension) {
-  std::string own = path.extension().string();
-  for (char& c : own) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return own == extension;
-}
-
-/// The first word of a text that begins no comment.
-std::string_view first_word(std::string_view bytes) {
-  return Cursor("", bytes, {.separator = '\0', .comment = '#'}).word();
-}
 
 [[noreturn]] void refuse_unknown(const std::string& name, std::string_view bytes) {
   const std::string_view word = first_word(bytes);
@@ -109,29 +94,14 @@ void refuse_other_solids(const FileMesh& file, const std::string& name) {
                           : std::string()));
 }
 
-/// Keeps the nodes that a tet names, in the order of the file.
 void take_nodes(FileMesh& file, TetMesh& mesh) {
-  std::vector<Index> new_index(file.nodes.size(), -1);
-  for (const Tet& tet : file.tets)
-    for (const Index v : tet) new_index[v] = 0;
-  Index count = 0;
-  for (Index& v : new_index)
-    if (v == 0) v = count++;
   if (file.numbers.node.empty()) {
     file.numbers.node.resize(file.nodes.size());
     std::iota(file.numbers.node.begin(), file.numbers.node.end(), std::int64_t{0});
   }
-  mesh.nodes.resize(count, 3);
-  for (std::size_t v = 0; v < new_index.size(); ++v)
-    if (new_index[v] >= 0) {
-      mesh.nodes.row(new_index[v]) = file.nodes[v].transpose();
-      file.numbers.node[new_index[v]] = file.numbers.node[v];
-    }
-  file.numbers.node.resize(count);
+  mesh.nodes = keep_nodes_in_use(file.nodes, file.tets, file.numbers.node);
   mesh.tets = std::move(file.tets);
-  for (Tet& tet : mesh.tets)
-    for (Index& v : tet) v = new_index[v];
-  if (const Index dropped = static_cast<Index>(file.nodes.size()) - count; dropped > 0)
+  if (const Index dropped = static_cast<Index>(file.nodes.size()) - mesh.num_nodes(); dropped > 0)
     file.warnings.push_back(plural(dropped, "node belongs", "nodes belong") + " to no tet: dropped");
 }
 
@@ -146,20 +116,8 @@ void reorder_reversed(TetMesh& mesh, std::vector<std::string>& warnings) {
     warnings.push_back(plural(reversed, "tet is", "tets are") + " reversed: two nodes swapped in each");
 }
 
-Index num_coincident_nodes(const TetMesh& mesh) {
-  std::vector<Index> order(mesh.num_nodes());
-  std::iota(order.begin(), order.end(), Index{0});
-  const auto place = [&](Index v) {
-    return std::array{mesh.nodes(v, 0), mesh.nodes(v, 1), mesh.nodes(v, 2)};
-  };
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return place(a) < place(b); });
-  Index count = 0;
-  for (std::size_t k = 1; k < order.size(); ++k) count += place(order[k]) == place(order[k - 1]);
-  return count;
-}
-
 void warn_of_surprises(const TetMesh& mesh, const MeshNumbers& numbers, std::vector<std::string>& warnings) {
-  if (const Index count = num_coincident_nodes(mesh); count > 0)
+  if (const Index count = num_coincident_nodes(mesh.nodes); count > 0)
     warnings.push_back(plural(count, "node lies", "nodes lie") + " where another node is: not merged");
   if (const Index count = connected_components(mesh).count; count > 1)
     warnings.push_back(std::to_string(count) + " components that are not connected");

@@ -1,20 +1,12 @@
 #pragma once
 /// \file Tetrahedral meshes from files.
 
+#include <io/mesh_notes.hpp>
 #include <physics/tet_mesh.hpp>
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 namespace supple {
-
-/// What a reader has to say about a mesh that it did read.
-struct MeshNotes {
-  std::string format;                 ///< "Gmsh 4.1, binary"
-  std::vector<std::string> warnings;  ///< what was repaired or left out, what may surprise in a simulation
-  MeshNumbers numbers;                ///< the file's own number of each node and each tet
-};
 
 /// Reads the tetrahedra of a file and makes them fit for elasticity. Formats, known by their content:
 ///   - Gmsh .msh 2.x and 4.1, ASCII and binary of either byte order; regions are the physical groups of

@@ -18,4 +18,24 @@ Vector lumped_mass(const TetMesh& mesh, double density) {
   return lumped_mass(mesh, Vector::Constant(1, density));
 }
 
+Vector lumped_mass(const TriangleMesh& mesh, VectorIn density, VectorIn thickness) {
+  if (density.size() != 1) require_size("density", density.size(), mesh.num_triangles());
+  if (thickness.size() != 1) require_size("thickness", thickness.size(), mesh.num_triangles());
+  Vector mass = Vector::Zero(mesh.num_nodes());
+  for (Index t = 0; t < mesh.num_triangles(); ++t) {
+    const double rho = density.size() == 1 ? density[0] : density[t];
+    const double h = thickness.size() == 1 ? thickness[0] : thickness[t];
+    require(rho > 0, "density of triangle " + std::to_string(t) + " is " + std::to_string(rho) +
+                         " kg/m^3, expected > 0");
+    require(h > 0,
+            "thickness of triangle " + std::to_string(t) + " is " + std::to_string(h) + " m, expected > 0");
+    for (const Index v : mesh.triangles[t]) mass[v] += rho * h * triangle_area(mesh, t) / 3;
+  }
+  return mass;
+}
+
+Vector lumped_mass(const TriangleMesh& mesh, double density, double thickness) {
+  return lumped_mass(mesh, Vector::Constant(1, density), Vector::Constant(1, thickness));
+}
+
 }  // namespace supple

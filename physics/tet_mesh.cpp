@@ -1,13 +1,11 @@
 #include <core/check.hpp>
+#include <physics/equal_keys.hpp>
 #include <physics/tet_mesh.hpp>
 
 #include <Eigen/Geometry>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <span>
 
 namespace supple {
 
@@ -26,34 +24,6 @@ Triangle face_nodes(const TetMesh& mesh, Index face) {
 /// Whether an odd number of swaps sorts the triangle: differs between the two sides of a face.
 bool is_odd(const Triangle& t) {
   return ((t[0] > t[1]) + (t[0] > t[2]) + (t[1] > t[2])) % 2 == 1;
-}
-
-/// Calls visit(ids) for every set of equal keys, in order of keys; ids ascend. A key is ascending node
-/// numbers below `num_nodes`: buckets by the first leave little to sort.
-template <typename Key, typename Visit>
-void visit_equal(const std::vector<Key>& keys, Index num_nodes, const Visit& visit) {
-  std::vector<Index> bucket_end(num_nodes + 1, 0);
-  for (const Key& key : keys) ++bucket_end[key[0] + 1];
-  std::partial_sum(bucket_end.begin(), bucket_end.end(), bucket_end.begin());
-  struct Item {
-    Index rest, id;  // the rest of the key as one number
-    bool operator<(const Item& other) const { return rest != other.rest ? rest < other.rest : id < other.id; }
-  };
-  std::vector<Item> items(keys.size());
-  for (Index id = 0; id < static_cast<Index>(keys.size()); ++id) {
-    const Key& key = keys[id];
-    items[bucket_end[key[0]]++] = {key.size() == 3 ? key[1] * num_nodes + key.back() : key.back(), id};
-  }
-  std::vector<Index> ids;
-  for (Index bucket = 0, begin = 0; bucket < num_nodes; begin = bucket_end[bucket++]) {
-    const Index end = bucket_end[bucket];
-    std::sort(items.begin() + begin, items.begin() + end);
-    for (Index k = begin; k < end;) {
-      const Index rest = items[k].rest;
-      for (ids.clear(); k < end && items[k].rest == rest; ++k) ids.push_back(items[k].id);
-      visit(std::span<const Index>(ids));
-    }
-  }
 }
 
 template <typename Visit>
@@ -76,17 +46,6 @@ struct EdgeVectors {
     ad = mesh.nodes.row(tet[3]).transpose() - a;
   }
 };
-
-/// The root of a union-find forest, with path halving.
-Index root_of(std::vector<Index>& parent, Index v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
-void unite(std::vector<Index>& parent, Index a, Index b) {
-  const Index r = root_of(parent, a), s = root_of(parent, b);
-  parent[std::max(r, s)] = std::min(r, s);
-}
 
 }  // namespace
 
@@ -187,33 +146,7 @@ std::vector<Triangle> boundary_faces(const TetMesh& mesh) {
 }
 
 Hinges boundary_hinges(const TetMesh& mesh) {
-  const std::vector<Triangle> faces = boundary_faces(mesh);
-  std::vector<std::array<Index, 2>> edges(3 * faces.size());  // 3 f + a: the edge of face f from its corner a
-  for (std::size_t side = 0; side < edges.size(); ++side) {
-    const Index from = faces[side / 3][side % 3], to = faces[side / 3][(side + 1) % 3];
-    edges[side] = {std::min(from, to), std::max(from, to)};
-  }
-  Hinges hinges;
-  std::vector<Index> fan(3 * faces.size());  // of corner a of face f
-  std::iota(fan.begin(), fan.end(), Index{0});
-  std::vector<char> on_hinge(mesh.num_nodes(), false);
-  const auto corner_at = [&](Index side, Index node) {
-    return faces[side / 3][side % 3] == node ? side : side - side % 3 + (side + 1) % 3;
-  };
-  visit_equal(edges, mesh.num_nodes(), [&](std::span<const Index> sides) {
-    if (sides.size() > 2) {
-      ++hinges.edges;
-      for (const Index node : edges[sides[0]]) on_hinge[node] = true;
-    } else if (sides.size() == 2) {
-      for (const Index node : edges[sides[0]])
-        unite(fan, corner_at(sides[0], node), corner_at(sides[1], node));
-    }
-  });
-  std::vector<Index> num_fans(mesh.num_nodes(), 0);
-  for (Index corner = 0; corner < static_cast<Index>(fan.size()); ++corner)
-    if (root_of(fan, corner) == corner) ++num_fans[faces[corner / 3][corner % 3]];
-  for (Index v = 0; v < mesh.num_nodes(); ++v) hinges.nodes += num_fans[v] > 1 && !on_hinge[v];
-  return hinges;
+  return surface_hinges(boundary_faces(mesh), mesh.num_nodes());
 }
 
 NodeComponents connected_components(const TetMesh& mesh) {

@@ -2,10 +2,11 @@
 /// \file The geometry of a solid: tetrahedra over nodes.
 
 #include <core/types.hpp>
+#include <physics/mesh_numbers.hpp>
 #include <physics/node_components.hpp>
+#include <physics/triangle_mesh.hpp>
 
 #include <array>
-#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,7 +14,6 @@
 namespace supple {
 
 using Tet = std::array<Index, 4>;
-using Triangle = std::array<Index, 3>;
 
 /// Nodes [m] and tetrahedra. A mesh that went through check_mesh or an io reader promises: finite
 /// coordinates, indices in range, four different nodes in a tet, volumes > 0, every node used, and at most
@@ -39,11 +39,6 @@ int tet_orientation(const TetMesh& mesh, Index e);
 /// 3 inradius / circumradius of tet e: 1 if regular, 0 if flat.
 double radius_ratio(const TetMesh& mesh, Index e);
 
-/// How messages call nodes and tets: by the numbers that a file gives them. Empty: by index.
-struct MeshNumbers {
-  std::vector<std::int64_t> node, tet;
-};
-
 /// Makes sure that a mesh is fit for elasticity: keeps what TetMesh promises.
 /// \throws std::invalid_argument that names the first tet, node or face at fault.
 /// \note O(n + m log k), k the largest number of tets at a node.
@@ -60,12 +55,7 @@ BoundingBox bounding_box(const Points& nodes);
 /// Faces that belong to one tet only, oriented outward, in order of tets.
 std::vector<Triangle> boundary_faces(const TetMesh& mesh);
 
-/// Where the boundary is not a surface: parts of the solid hang together by an edge or a node only and turn
-/// about it freely.
-struct Hinges {
-  Index edges = 0;  ///< that belong to more than two boundary faces
-  Index nodes = 0;  ///< off those edges, with more than one fan of boundary faces
-};
+/// Where the boundary is not a surface.
 Hinges boundary_hinges(const TetMesh& mesh);
 
 /// Connected components of the object, through shared nodes.

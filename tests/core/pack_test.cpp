@@ -75,7 +75,6 @@ TEST(Pack, FunctionsAreThoseOfEachLane) {
     EXPECT_EQ(exp(a)[k], std::exp(a[k]));
     EXPECT_EQ(cbrt(b)[k], std::cbrt(b[k]));
     EXPECT_EQ(acos(b)[k], std::acos(b[k]));
-    EXPECT_EQ(atan2(b, a)[k], std::atan2(b[k], a[k]));
     EXPECT_EQ(pow(a, 1.5)[k], std::pow(a[k], 1.5));
     EXPECT_EQ(abs(b)[k], std::abs(b[k]));
     EXPECT_EQ(min(a, b)[k], std::min(a[k], b[k]));
@@ -90,6 +89,42 @@ TEST(Pack, FunctionsAreThoseOfEachLane) {
         return sum;
       }(),
       1e-15 * 8);
+}
+
+TEST(Pack, AnglesAreThoseOfTheStandardLibraryToTheLastPlaces) {
+  constexpr double tolerance =
+      3 * std::numeric_limits<double>::epsilon();  // 2.5 units, and one of std::atan2
+  Random random(4);
+  for (int k = 0; k < 20000; ++k) {
+    const double scale = std::exp(60 * (random.uniform() - 0.5));
+    const Pack y = random_pack(random, -1, 1), x = random_pack(random, -scale, scale), angle = atan2(y, x);
+    for (int lane = 0; lane < Pack::size; ++lane) {
+      const double expected = std::atan2(y[lane], x[lane]);
+      ASSERT_NEAR(angle[lane], expected, tolerance * std::abs(expected)) << y[lane] << ", " << x[lane];
+    }
+  }
+}
+
+TEST(Pack, AnglesOfTheAxesTheDiagonalsAndTheOriginAreThoseOfTheStandardLibrary) {
+  constexpr double denormal = std::numeric_limits<double>::denorm_min(),
+                   infinity = std::numeric_limits<double>::infinity();
+  for (const double y : {0.0, -0.0, 1.0, -1.0, denormal, -denormal, 1e300, -1e300, infinity})
+    for (const double x : {0.0, -0.0, 1.0, -1.0, denormal, -denormal, 1e300, -1e300}) {
+      const double angle = atan2(Pack(y), Pack(x))[6], expected = std::atan2(y, x);
+      EXPECT_DOUBLE_EQ(angle, expected) << y << ", " << x;
+      EXPECT_EQ(std::signbit(angle), std::signbit(expected)) << y << ", " << x;
+    }
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(atan2(Pack(nan), Pack(1))[0]) && std::isnan(atan2(Pack(1), Pack(nan))[0]));
+}
+
+TEST(Pack, AnyPositiveLooksAtEveryLane) {
+  EXPECT_FALSE(any_positive(Pack(0)) || any_positive(Pack(-1)));
+  for (int k = 0; k < Pack::size; ++k) {
+    Pack a = -1;
+    a.set(k, 1e-300);
+    EXPECT_TRUE(any_positive(a)) << k;
+  }
 }
 
 TEST(Pack, WorksAsTheScalarOfEigenMatrices) {

@@ -5,6 +5,9 @@ namespace supple::test {
 
 INSTANTIATE_TYPED_TEST_SUITE_P(StVenantKirchhoffTets, ForceModelConformance, TetBar<StVenantKirchhoff>);
 INSTANTIATE_TYPED_TEST_SUITE_P(MooneyRivlinTets, ForceModelConformance, TetBar<MooneyRivlin>);
+INSTANTIATE_TYPED_TEST_SUITE_P(FlatShell, ForceModelConformance, FlatShell);
+INSTANTIATE_TYPED_TEST_SUITE_P(ClosedShell, ForceModelConformance, ClosedShell);
+INSTANTIATE_TYPED_TEST_SUITE_P(CurvedShell, ForceModelConformance, CurvedShell);
 INSTANTIATE_TYPED_TEST_SUITE_P(Springs, ForceModelConformance, SpringBar);
 INSTANTIATE_TYPED_TEST_SUITE_P(Oscillators, ForceModelConformance, DuffingSet);
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file The models that the conformance suites run over: factories of models and of full systems.
 
+#include <physics/discrete_shell.hpp>
 #include <physics/full_system.hpp>
 #include <physics/mass.hpp>
 #include <physics/tet_elasticity.hpp>
@@ -24,6 +25,49 @@ struct TetBar {
     return {mesh(), materials};
   }
   static Vector nodal_mass() { return lumped_mass(mesh(), 1000.0); }
+};
+
+/// An irregular flat sheet with a boundary, a material a triangle. `bending` against stretch · length² tells
+/// how much of the stiffness is that of hinges.
+struct FlatShell {
+  static constexpr double length = 0.1;
+  static TriangleMesh mesh() {
+    TriangleMesh sheet = perturbed(square_grid(3, 2, length), 0.15 * length, 12);
+    sheet.nodes.col(2).setZero();
+    return sheet;
+  }
+  static DiscreteShell make() {
+    std::vector<ShellMaterial> materials;
+    for (Index t = 0; t < mesh().num_triangles(); ++t) {
+      const double k = static_cast<double>(t);
+      materials.push_back({.bending = 0.1 + 0.02 * k, .stretch = 100 - 3 * k, .area = 20 + k});
+    }
+    return {mesh(), materials};
+  }
+  static Vector nodal_mass() { return lumped_mass(mesh(), 1000.0, 0.01); }
+};
+
+/// A closed surface with sharp edges, as stiff in bending as in stretch; nothing resists changes of area.
+struct ClosedShell {
+  static constexpr double length = 0.1;
+  static TriangleMesh mesh() { return perturbed(octahedron(length), 0.1 * length, 13); }
+  static DiscreteShell make() { return {mesh(), {.bending = 0.5, .stretch = 100, .area = 0}}; }
+  static Vector nodal_mass() { return lumped_mass(mesh(), 1000.0, 0.01); }
+};
+
+/// A curved sheet with a boundary, of a real material: hardly stiff in bending.
+struct CurvedShell {
+  static constexpr double length = 0.1;
+  static TriangleMesh mesh() {
+    TriangleMesh sheet = equilateral_grid(3, 3, length);
+    for (Index v = 0; v < sheet.num_nodes(); ++v) {
+      const double x = sheet.nodes(v, 0) / length, y = sheet.nodes(v, 1) / length;
+      sheet.nodes(v, 2) = length * (0.2 * x * x - 0.15 * x * y);
+    }
+    return sheet;
+  }
+  static DiscreteShell make() { return {mesh(), ShellMaterial::from({.young = 1e6, .poisson = 0.45}, 0.02)}; }
+  static Vector nodal_mass() { return lumped_mass(mesh(), 1000.0, 0.02); }
 };
 
 struct SpringBar {

@@ -3,9 +3,12 @@
 
 #include <core/random.hpp>
 #include <physics/tet_mesh.hpp>
+#include <physics/triangle_mesh.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace supple::test {
@@ -50,15 +53,68 @@ inline TetMesh kuhn_box(Index nx, Index ny, Index nz, double edge = 0.1) {
 }
 
 /// Every coordinate moved by up to `amplitude` [m] either way; keep it well below the height of the tets.
-inline TetMesh perturbed(TetMesh mesh, double amplitude, std::uint64_t seed) {
+template <typename Mesh>
+Mesh perturbed(Mesh mesh, double amplitude, std::uint64_t seed) {
   Random random(seed);
   for (Index k = 0; k < mesh.nodes.size(); ++k)
     mesh.nodes.data()[k] += amplitude * (2 * random.uniform() - 1);
   return mesh;
 }
 
-template <typename Predicate>
-std::vector<Index> nodes_where(const TetMesh& mesh, const Predicate& holds) {
+/// nx × ny squares of size `edge` [m] in the plane z = 0, normals along z, all cut along the diagonal (1, 1).
+/// Node (i, j) is number i + (nx + 1) j, at edge · (i, j).
+inline TriangleMesh square_grid(Index nx, Index ny, double edge = 0.1) {
+  TriangleMesh mesh;
+  mesh.nodes.resize((nx + 1) * (ny + 1), 3);
+  for (Index j = 0; j <= ny; ++j)
+    for (Index i = 0; i <= nx; ++i)
+      mesh.nodes.row(i + (nx + 1) * j) << edge * static_cast<double>(i), edge * static_cast<double>(j), 0;
+  for (Index j = 0; j < ny; ++j)
+    for (Index i = 0; i < nx; ++i) {
+      const Index v = i + (nx + 1) * j, up = v + nx + 1;
+      mesh.triangles.push_back({v, v + 1, up + 1});
+      mesh.triangles.push_back({v, up + 1, up});
+    }
+  return mesh;
+}
+
+/// ny rows of 2 nx equilateral triangles of size `edge` [m] in the plane z = 0, normals along z. Node (i, j)
+/// is number i + (nx + 1) j; every other row is shifted by half an edge in x.
+inline TriangleMesh equilateral_grid(Index nx, Index ny, double edge = 0.1) {
+  TriangleMesh mesh = square_grid(nx, ny, edge);
+  for (Index j = 0; j <= ny; ++j)
+    for (Index i = 0; i <= nx; ++i)
+      mesh.nodes.row(i + (nx + 1) * j) << edge * (static_cast<double>(i) + (j % 2 == 1 ? 0.5 : 0)),
+          edge * std::sqrt(0.75) * static_cast<double>(j), 0;
+  mesh.triangles.clear();
+  for (Index j = 0; j < ny; ++j)
+    for (Index i = 0; i < nx; ++i) {
+      const Index v = i + (nx + 1) * j, up = v + nx + 1;
+      if (j % 2 == 0) {
+        mesh.triangles.push_back({v, v + 1, up});
+        mesh.triangles.push_back({v + 1, up + 1, up});
+      } else {
+        mesh.triangles.push_back({v, v + 1, up + 1});
+        mesh.triangles.push_back({v, up + 1, up});
+      }
+    }
+  return mesh;
+}
+
+/// The octahedron with corners at ± radius on the axes, normals outward.
+inline TriangleMesh octahedron(double radius = 0.1) {
+  TriangleMesh mesh;
+  mesh.nodes = Points::Zero(6, 3);
+  for (int a = 0; a < 3; ++a) mesh.nodes(2 * a, a) = radius, mesh.nodes(2 * a + 1, a) = -radius;
+  for (Index x = 0; x < 2; ++x)
+    for (Index y = 2; y < 4; ++y)
+      for (Index z = 4; z < 6; ++z)
+        mesh.triangles.push_back((x + y + z) % 2 == 0 ? Triangle{x, y, z} : Triangle{x, z, y});
+  return mesh;
+}
+
+template <typename Mesh, typename Predicate>
+std::vector<Index> nodes_where(const Mesh& mesh, const Predicate& holds) {
   std::vector<Index> nodes;
   for (Index v = 0; v < mesh.num_nodes(); ++v)
     if (holds(Point(mesh.nodes.row(v)))) nodes.push_back(v);

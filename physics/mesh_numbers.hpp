@@ -1,0 +1,14 @@
+#pragma once
+/// \file How messages call the parts of a mesh.
+
+#include <cstdint>
+#include <vector>
+
+namespace supple {
+
+/// The numbers that a file gives to nodes and elements, by which messages call them. Empty: by index.
+struct MeshNumbers {
+  std::vector<std::int64_t> node = {}, tet = {}, triangle = {};
+};
+
+}  // namespace supple
