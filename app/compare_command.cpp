@@ -99,11 +99,11 @@ void draw_errors(const std::filesystem::path& path, const Comparison& c) {
                               {"energy", c.time, 100 * c.energy.share()}}});
 }
 
-void draw_comparison(const std::filesystem::path& path, const TetMesh& mesh,
+void draw_comparison(const std::filesystem::path& path, const Body& body,
                      const std::pair<std::string, std::string>& name, const Vector& u_a, const Vector& u_b,
                      double time) {
-  const Surface surface(mesh);
-  const Points rest = surface.rows(mesh.nodes), a = surface.rows(as_points(u_a)),
+  const Surface surface(body);
+  const Points rest = surface.rows(node_positions(body)), a = surface.rows(as_points(u_a)),
                b = surface.rows(as_points(u_b));
   char text[32];
   std::snprintf(text, sizeof text, ", t = %.3f s", time);
@@ -130,16 +130,16 @@ void CompareCommand::run() const {
   const Trajectory a = load_trajectory(first), b = load_trajectory(reference);
   const ReducedModel model_b = load_model_of(b, reference);
   const bool one_model = a.model_checksum == b.model_checksum && a.model == b.model;
-  if (one_model && a.u.cols() != (a.reduced ? model_b.dim() : 3 * model_b.solid.mesh.num_nodes()))
+  if (one_model && a.u.cols() != (a.reduced ? model_b.dim() : 3 * num_nodes(model_b.body)))
     throw InputError(first.string() + ": its frames do not fit its model");
   const ReducedModel model_a = one_model ? model_b : load_model_of(a, first);
-  const TetMesh& mesh = model_b.solid.mesh;
-  if (model_a.solid.mesh.nodes.rows() != mesh.nodes.rows() || model_a.solid.mesh.nodes != mesh.nodes)
+  const Points &nodes = node_positions(model_b.body), &others = node_positions(model_a.body);
+  if (others.rows() != nodes.rows() || others != nodes)
     throw InputError(first.string() + " and " + reference.string() + " are of different meshes");
   const std::vector<std::pair<Index, Index>> frames = common_frames(*this, a, b);
   if (!output.empty()) make_folder(output);
 
-  const Vector mass = model_b.solid.nodal_mass();
+  const Vector mass = nodal_mass(model_b.body);
   const auto norm = [&](const Vector& field) {
     return std::sqrt(as_points(field).rowwise().squaredNorm().dot(mass));
   };
@@ -162,7 +162,7 @@ void CompareCommand::run() const {
   }
   Index worst = 0;
   result.position.difference.maxCoeff(&worst);
-  const double diagonal = bounding_box(mesh.nodes).diagonal(), distance = result.largest_distance.maxCoeff();
+  const double diagonal = bounding_box(nodes).diagonal(), distance = result.largest_distance.maxCoeff();
   const auto name = names(*this, a, b);
   if (!output.empty()) {
     write_errors(output / "errors.csv", result);
@@ -175,7 +175,7 @@ void CompareCommand::run() const {
       warn("gnuplot is not installed: there will be no errors.png");
     tell(progress, "picture", 0);
     const auto [f, g] = frames[worst];
-    draw_comparison(output / "comparison.png", mesh, name, frame_displacement(a, model_a, f),
+    draw_comparison(output / "comparison.png", model_b.body, name, frame_displacement(a, model_a, f),
                     frame_displacement(b, model_b, g), result.time[worst]);
   }
   clear_progress();

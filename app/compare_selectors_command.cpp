@@ -22,10 +22,11 @@ SelectorRun run_selector(const SelectionStudy& study, const std::string& selecto
   return run;
 }
 
-std::string description(const CompareSelectorsCommand& command, const ReduceOptions& options,
+std::string description(const CompareSelectorsCommand& command, const ReduceOptions& options, const Body& body,
                         const SelectionStudy& study) {
   const ReduceReport& report = study.report();
-  std::string text = shown_count(report.tets) + " tets (" + command.law + "), subspace of dimension " +
+  std::string text = shown_count(report.components) + " " + std::string(component_name(body)) + " (" +
+                     std::string(law(body)) + "), subspace of dimension " +
                      std::to_string(report.dimension) + ", " + std::to_string(report.poses) +
                      " training poses by the " + command.recipe + " recipe, errors in the " +
                      (options.norm == ForceNorm::Mass ? "mass" : "stiffness") + " norm, " +
@@ -46,17 +47,18 @@ void CompareSelectorsCommand::run() const {
   const Stopwatch total;
   const NamedMesh named = load_mesh(mesh);
   for (const std::string& warning : named.notes.warnings) warn(mesh + ": " + warning);
-  const Solid solid = load_solid(*this, named.mesh);
+  const Body body = load_body(*this, named);
+  const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
   for (const Index size : sizes)
-    if (size < 1 || size > solid.mesh.num_tets())
-      throw InputError("--sizes holds " + std::to_string(size) + ", expected 1 to the number of tets, " +
-                       std::to_string(solid.mesh.num_tets()));
+    if (size < 1 || size > m)
+      throw InputError("--sizes holds " + std::to_string(size) + ", expected 1 to the number of " +
+                       std::string(component_name(body)) + ", " + std::to_string(m));
   if (!output.empty()) make_folder(output);
-  const ReduceOptions options = reduce_options(*this, named.mesh);
+  const ReduceOptions options = reduce_options(*this, named);
   std::vector<PullScene> scenes;
   if (trajectories)
     scenes = {{.name = "pull"}, {.name = "ramped pull", .ramp = 60}, {.name = "damped pull", .damping = 0.05}};
-  const SelectionStudy study(solid, options, std::move(scenes), progress_bar());
+  const SelectionStudy study(body, options, std::move(scenes), progress_bar());
   for (const std::string& note : study.report().notes) warn(note);
 
   std::vector<SelectorRun> results;
@@ -68,7 +70,7 @@ void CompareSelectorsCommand::run() const {
 
   const std::vector<SelectorSummary> summaries = summarize(results);
   const std::string table = markdown_table(summaries, study.scenes()), title = "Selectors on " + mesh,
-                    text = description(*this, options, study);
+                    text = description(*this, options, body, study);
   if (!output.empty()) {
     write_runs(output / "runs.csv", results, study.scenes());
     {

@@ -5,6 +5,7 @@
 #include <app/terminal.hpp>
 #include <core/check.hpp>
 #include <io/builtin_meshes.hpp>
+#include <io/builtin_surfaces.hpp>
 #include <io/vtu_writer.hpp>
 #include <reduction/reduced_model.hpp>
 
@@ -79,37 +80,81 @@ Json mesh_json(const TetMesh& mesh, Rows& rows) {
   return json;
 }
 
+Json mesh_json(const TriangleMesh& mesh, Rows& rows) {
+  const BoundingBox box = bounding_box(mesh.nodes);
+  double area = 0, worst = 1, sum = 0;
+  for (Index t = 0; t < mesh.num_triangles(); ++t) {
+    const double quality = radius_ratio(mesh, t);
+    area += triangle_area(mesh, t);
+    worst = std::min(worst, quality);
+    sum += quality;
+  }
+  const double mean = sum / static_cast<double>(mesh.num_triangles());
+  const Index components = connected_components(mesh).count,
+              flaps = static_cast<Index>(interior_edges(mesh).size()),
+              boundary = static_cast<Index>(boundary_edges(mesh).size());
+  rows.insert(rows.end(), {{"nodes", shown_count(mesh.num_nodes())},
+                           {"triangles", shown_count(mesh.num_triangles())},
+                           {"flaps", shown_count(flaps)},
+                           {"boundary edges", shown_count(boundary)},
+                           {"size", shown_point(box.extent()) + ", from (" + joined(box.lower, 3) + ")"},
+                           {"area", shown(area) + " m^2"},
+                           {"radius ratio", "worst " + shown(worst, 2) + ", mean " + shown(mean, 2)},
+                           {"components", std::to_string(components)}});
+  return {{"nodes", mesh.num_nodes()},
+          {"triangles", mesh.num_triangles()},
+          {"flaps", flaps},
+          {"boundary_edges", boundary},
+          {"lower", json_numbers(box.lower)},
+          {"upper", json_numbers(box.upper)},
+          {"area", area},
+          {"radius_ratio", {{"worst", worst}, {"mean", mean}}},
+          {"components", components}};
+}
+
+/// One row a material: the parameters of the law, of a shell k_B [J], k_L and k_A [N/m].
+RowMatrix material_parameters(const Body& body) {
+  if (const Solid* solid = std::get_if<Solid>(&body)) return solid->parameters;
+  const std::vector<ShellMaterial>& materials = std::get<Shell>(body).materials;
+  RowMatrix rows(static_cast<Index>(materials.size()), 3);
+  for (Index k = 0; k < rows.rows(); ++k) rows.row(k) << materials[k].bending, materials[k].stretch, materials[k].area;
+  return rows;
+}
+
 Json model_json(const ReducedModel& model, Rows& rows) {
-  const Solid& solid = model.solid;
-  const double mass = solid.nodal_mass().sum();
+  const double mass = nodal_mass(model.body).sum();
+  const RowMatrix materials = material_parameters(model.body);
+  const RayleighDamping& damping = supple::damping(model.body);
+  const std::size_t fixed = fixed_nodes(model.body).size();
   const Vector hertz = model.omega() / (2 * std::numbers::pi);
   const bool nodal = model.subspace.index() == 0;
   std::string parameters;
-  for (Index k = 0; k < std::min<Index>(solid.parameters.rows(), 4); ++k)
-    parameters += (k > 0 ? "; " : " ") + joined(solid.parameters.row(k), 3);
+  for (Index k = 0; k < std::min<Index>(materials.rows(), 4); ++k)
+    parameters += (k > 0 ? "; " : " ") + joined(materials.row(k), 3);
+  const bool shell = std::holds_alternative<Shell>(model.body);
   rows.insert(
       rows.end(),
-      {{"law", solid.law + "," + parameters + " Pa" + (solid.parameters.rows() > 4 ? "; ..." : "")},
+      {{"law", std::string(law(model.body)) + "," + parameters + (shell ? " J, N/m, N/m" : " Pa") +
+                   (materials.rows() > 4 ? "; ..." : "")},
        {"mass", shown(mass) + " kg"},
-       {"fixed nodes", shown_count(static_cast<long long>(solid.fixed_nodes.size()))},
-       {"damping", "alpha " + shown(solid.damping.alpha) + " 1/s, beta " + shown(solid.damping.beta) + " s"},
+       {"fixed nodes", shown_count(static_cast<long long>(fixed))},
+       {"damping", "alpha " + shown(damping.alpha) + " 1/s, beta " + shown(damping.beta) + " s"},
        {"subspace", "dimension " + std::to_string(model.dim()) + (nodal ? ", extended modal" : ", modal")},
        {"modes", joined(hertz, 8) + " Hz"},
        {"points", std::to_string(model.indices.size())}});
   Json json{{"dimension", model.dim()},
             {"points", model.indices.size()},
             {"subspace", nodal ? "extended" : "modal"},
-            {"law", solid.law},
+            {"law", law(model.body)},
             {"materials", Json::array()},
             {"mass", mass},
-            {"fixed_nodes", solid.fixed_nodes.size()},
-            {"damping", {{"alpha", solid.damping.alpha}, {"beta", solid.damping.beta}}},
+            {"fixed_nodes", fixed},
+            {"damping", {{"alpha", damping.alpha}, {"beta", damping.beta}}},
             {"omega", json_numbers(model.omega())},
             {"indices", model.indices},
             {"weights", json_numbers(model.weights)},
             {"provenance", Json::object()}};
-  for (Index k = 0; k < solid.parameters.rows(); ++k)
-    json["materials"].push_back(json_numbers(solid.parameters.row(k)));
+  for (Index k = 0; k < materials.rows(); ++k) json["materials"].push_back(json_numbers(materials.row(k)));
   for (const auto& [key, text] : model.provenance) {
     const Json parsed =
         key == "options" || key.ends_with("_error") ? Json::parse(text, nullptr, false) : Json(text);
@@ -126,18 +171,18 @@ void InfoCommand::run() const {
   Rows rows;
   Json report{{"command", "info"}, {"version", SUPPLE_VERSION}, {"source", source}};
   std::string kind = "mesh";
-  if (!is_builtin(source) && is_tensor_file(source)) {
+  if (!is_builtin(source) && !is_builtin_surface(source) && is_tensor_file(source)) {
     kind = "reduced model";
     const ReducedModel model = load_model(source);
     report["kind"] = "model";
-    report["mesh"] = mesh_json(model.solid.mesh, rows);
+    report["mesh"] = std::visit([&](const auto& some) { return mesh_json(some.mesh, rows); }, model.body);
     report.update(model_json(model, rows));
   } else {
     const NamedMesh named = load_mesh(source);
     report["kind"] = "mesh";
     rows.emplace_back("format", named.notes.format);
     report["format"] = named.notes.format;
-    report.update(mesh_json(named.mesh, rows));
+    report.update(std::visit([&](const auto& mesh) { return mesh_json(mesh, rows); }, named.mesh));
     report["warnings"] = named.notes.warnings;
     for (const std::string& warning : named.notes.warnings) warn(source + ": " + warning);
   }
@@ -149,14 +194,19 @@ void MeshCommand::run() const {
   require_writable(output);
   const NamedMesh named = load_mesh(source);
   for (const std::string& warning : named.notes.warnings) warn(source + ": " + warning);
+  const ExitGuard guard;
+  if (const auto* surface = std::get_if<TriangleMesh>(&named.mesh)) {
+    write_vtu(output, surface->nodes, surface->triangles, {});
+    return;
+  }
+  const TetMesh& mesh = std::get<TetMesh>(named.mesh);
   VtuFields fields;
-  if (!named.mesh.region.empty()) {
-    RowMatrix region(named.mesh.num_tets(), 1);
-    for (Index e = 0; e < named.mesh.num_tets(); ++e) region(e, 0) = named.mesh.region[e];
+  if (!mesh.region.empty()) {
+    RowMatrix region(mesh.num_tets(), 1);
+    for (Index e = 0; e < mesh.num_tets(); ++e) region(e, 0) = mesh.region[e];
     fields.cell_data.push_back({"region", region});
   }
-  const ExitGuard guard;
-  write_vtu(output, named.mesh.nodes, named.mesh.tets, fields);
+  write_vtu(output, mesh.nodes, mesh.tets, fields);
 }
 
 }  // namespace supple

@@ -1,3 +1,4 @@
+#include <app/edit_command.hpp>
 #include <app/compare_command.hpp>
 #include <app/compare_selectors_command.hpp>
 #include <app/exit_guard.hpp>
@@ -8,6 +9,7 @@
 #include <app/terminal.hpp>
 #include <core/check.hpp>
 #include <io/builtin_meshes.hpp>
+#include <io/builtin_surfaces.hpp>
 #include <io/json_fields.hpp>
 #include <physics/solid.hpp>
 #include <sparse/selector_library.hpp>
@@ -35,7 +37,7 @@ void add_threads(CLI::App& app, int& threads) {
 /// The object and the method of training, for all commands that pose a fitting problem.
 void add_problem(CLI::App& command, ProblemOptions& c) {
   command
-      .add_option("MESH", c.mesh, "Mesh file (.msh .mesh .node .ele .veg .vtk .vtu) or built-in, see below")
+      .add_option("MESH", c.mesh, "Tets (.msh .mesh .node .ele .veg .vtk .vtu), a surface (.obj .off .ply .stl), or a built-in, see below")
       ->required();
   const auto object = "Object";
   command.add_option("--material", c.law, "Law: stvk or mooney-rivlin")
@@ -46,6 +48,10 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
       ->capture_default_str()
       ->group(object);
   command.add_option("--poisson", c.poisson, "Poisson's ratio")->capture_default_str()->group(object);
+  command
+      .add_option("--thickness", c.thickness, "Of a surface, a discrete shell [m]; or a share of its diagonal [1%]")
+      ->type_name("H")
+      ->group(object);
   command.add_option("--density", c.density, "Density [kg/m^3]")->capture_default_str()->group(object);
   command
       .add_option("--materials", c.materials,
@@ -138,7 +144,7 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
       ->check(CLI::IsMember(known_selectors()))
       ->group(method);
   add_threads(reduce, c.threads);
-  reduce.footer("Built-in meshes:\n" + std::string(builtin_mesh_help) +
+  reduce.footer("Built-in meshes:\n" + std::string(builtin_mesh_help) + std::string(builtin_surface_help) +
                 "\nExamples:\n"
                 "supple reduce dragon.msh -o dragon.supple --fix 'y<4%' --points 150\n"
                 "supple reduce octopus -o octopus.supple --fix 'y<4%' --picture octopus.png --json -");
@@ -308,6 +314,24 @@ CLI::App& add_select(CLI::App& app, SelectCommand& c) {
   return select;
 }
 
+CLI::App& add_edit(CLI::App& app, EditCommand& c) {
+  CLI::App& edit = *app.add_subcommand("edit", "Deform an object by moving handles on it");
+  edit.add_option("MODEL", c.model, "Model that 'supple reduce' made")->required();
+  edit.add_option("--scene", c.scene, "Handles and their motions, see docs/edit-scene.md")->required()->type_name("FILE.json");
+  edit.add_flag("--full", c.full, "Solve the unreduced system, the reference");
+  edit.add_option("--solver", c.solver, "Of the equilibrium [newton]")->check(CLI::IsMember({"newton", "bfgs", "nlopt"}));
+  edit.add_option("--tolerance", c.tolerance, "Residual of a solve against its largest force [1e-6]");
+  edit.add_option("--frames", c.frames, "What ParaView gets of every solve")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"surface", "tets", "none"}));
+  edit.add_option("-o,--output", c.output, "Folder for picture.png, series.pvd, solves.csv, trajectory and report")
+      ->type_name("DIR");
+  add_json(edit, c.json);
+  add_threads(edit, c.threads);
+  edit.footer("Example:\nsupple edit cactus.supple --scene bend.json -o bent");
+  return edit;
+}
+
 CLI::App& add_info(CLI::App& app, InfoCommand& c) {
   CLI::App& info = *app.add_subcommand("info", "Say what a model or a mesh holds");
   info.add_option("SOURCE", c.source, "Model, mesh file or built-in mesh")->required();
@@ -319,7 +343,7 @@ CLI::App& add_mesh(CLI::App& app, MeshCommand& c) {
   CLI::App& mesh = *app.add_subcommand("mesh", "Write a built-in or other mesh for ParaView");
   mesh.add_option("SOURCE", c.source, "Mesh file or built-in mesh")->required();
   mesh.add_option("-o,--output", c.output, "File to write")->required()->type_name("FILE.vtu");
-  mesh.footer("Built-in meshes:\n" + std::string(builtin_mesh_help));
+  mesh.footer("Built-in meshes:\n" + std::string(builtin_mesh_help) + std::string(builtin_surface_help));
   return mesh;
 }
 
@@ -369,6 +393,7 @@ int run(int argc, char** argv) {
       "\n'supple COMMAND --help' says more.");
   ReduceCommand reduce;
   SimulateCommand simulate;
+  EditCommand edit;
   CompareCommand compare;
   CompareSelectorsCommand compare_selectors;
   SelectCommand select;
@@ -376,6 +401,7 @@ int run(int argc, char** argv) {
   MeshCommand mesh;
   add_reduce(app, reduce).callback([&] { reduce.run(); });
   add_simulate(app, simulate).callback([&] { simulate.run(); });
+  add_edit(app, edit).callback([&] { edit.run(); });
   add_compare(app, compare).callback([&] { compare.run(); });
   add_compare_selectors(app, compare_selectors).callback([&] { compare_selectors.run(); });
   add_select(app, select).callback([&] { select.run(); });

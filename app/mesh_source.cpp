@@ -1,21 +1,50 @@
 #include <app/mesh_source.hpp>
 #include <core/check.hpp>
 #include <io/builtin_meshes.hpp>
+#include <io/builtin_surfaces.hpp>
+#include <io/mesh_reader.hpp>
+#include <io/surface_reader.hpp>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
 
 namespace supple {
 
+namespace {
+
+bool is_surface_file(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::array surfaces{".obj", ".off", ".ply", ".stl"};
+  return std::find(surfaces.begin(), surfaces.end(), extension) != surfaces.end();
+}
+
+}  // namespace
+
+Index NamedMesh::num_elements() const {
+  if (const auto* surface = std::get_if<TriangleMesh>(&mesh)) return surface->num_triangles();
+  return std::get<TetMesh>(mesh).num_tets();
+}
+
 NamedMesh load_mesh(const std::string& spec) {
   NamedMesh result;
-  if (is_builtin(spec)) {
-    result.mesh = builtin_mesh(spec);
+  if (is_builtin(spec) || is_builtin_surface(spec)) {
     result.notes.format = "built-in";
+    if (is_builtin(spec))
+      result.mesh = builtin_mesh(spec);
+    else
+      result.mesh = builtin_surface(spec);
     return result;
   }
   if (!std::filesystem::exists(spec))
-    throw InputError(
-        spec +
-        ": there is no such file, and no built-in mesh of this name (bar, cube, menger, ball, octopus)");
-  result.mesh = read_tet_mesh(spec, &result.notes);
+    throw InputError(spec + ": there is no such file, and no built-in mesh of this name (bar, cube, menger, ball, "
+                            "octopus; plate, cylinder, sphere)");
+  if (is_surface_file(spec))
+    result.mesh = read_triangle_mesh(spec, &result.notes);
+  else
+    result.mesh = read_tet_mesh(spec, &result.notes);
   return result;
 }
 

@@ -1,18 +1,27 @@
 #pragma once
 /// \file Meshes as the command line names them.
 
-#include <io/mesh_reader.hpp>
+#include <io/mesh_notes.hpp>
+#include <physics/tet_mesh.hpp>
+#include <physics/triangle_mesh.hpp>
 
 #include <string>
+#include <variant>
 
 namespace supple {
 
 struct NamedMesh {
-  TetMesh mesh;
+  std::variant<TetMesh, TriangleMesh> mesh;
   MeshNotes notes;  ///< of a file; for a built-in only the format
+
+  const Points& nodes() const {
+    return std::visit([](const auto& m) -> const Points& { return m.nodes; }, mesh);
+  }
+  Index num_elements() const;
 };
 
-/// A built-in such as "bar:80x20x10", or else a file.
+/// A built-in such as "bar:80x20x10" or "sphere:16", or else a file: a surface by its extension (.obj, .off, .ply,
+/// .stl), anything else tetrahedra.
 NamedMesh load_mesh(const std::string& spec);
 
 }  // namespace supple

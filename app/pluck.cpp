@@ -53,7 +53,7 @@ Scene pluck_scene(const ReducedModel& model) {
       model.subspace);
   if (modes.num_zero == modes.omega.size()) throw SolverError("the model has no flexible mode to pluck");
   const double omega = modes.omega[modes.num_zero], period = 2 * std::numbers::pi / omega;
-  const Vector mass = model.solid.nodal_mass();
+  const Vector mass = nodal_mass(model.body);
   int axis = -1;
   Pull pull = std::visit(
       [&](const auto& subspace) {
@@ -64,7 +64,7 @@ Scene pluck_scene(const ReducedModel& model) {
   Index farthest = 0;
   const double length = std::sqrt(pull.displacement.rowwise().squaredNorm().maxCoeff(&farthest));
   // a constant pull that ends after half a period moves a linear object by twice the static displacement
-  const double scale = reach * bounding_box(model.solid.mesh.nodes).diagonal() / (2 * length);
+  const double scale = reach * bounding_box(node_positions(model.body)).diagonal() / (2 * length);
 
   Scene scene;
   scene.duration = 3 * period;

@@ -8,30 +8,31 @@ namespace supple {
 
 namespace {
 
-Matrix frames_of_trajectory(const std::filesystem::path& path, const TetMesh& mesh) {
+Matrix frames_of_trajectory(const std::filesystem::path& path, const Points& nodes) {
   const Trajectory trajectory = load_trajectory(path);
   const ReducedModel model = load_model_of(trajectory, path);
-  if (model.solid.mesh.nodes.rows() != mesh.nodes.rows() || model.solid.mesh.nodes != mesh.nodes)
+  const Points& others = node_positions(model.body);
+  if (others.rows() != nodes.rows() || others != nodes)
     throw InputError(path.string() + ": the trajectory is of another mesh than the one to be reduced");
   std::vector<Index> deformed;
   for (Index f = 0; f < trajectory.num_frames(); ++f)
     if (!trajectory.u.row(f).isZero(0)) deformed.push_back(f);
-  Matrix poses(3 * mesh.num_nodes(), static_cast<Index>(deformed.size()));
+  Matrix poses(3 * nodes.rows(), static_cast<Index>(deformed.size()));
   for (Index t = 0; t < poses.cols(); ++t) poses.col(t) = frame_displacement(trajectory, model, deformed[t]);
   return poses;
 }
 
 }  // namespace
 
-Matrix read_poses(const std::filesystem::path& path, const TetMesh& mesh) {
-  if (std::filesystem::is_directory(path)) return read_poses(path / trajectory_file, mesh);
+Matrix read_poses(const std::filesystem::path& path, const Points& nodes) {
+  if (std::filesystem::is_directory(path)) return read_poses(path / trajectory_file, nodes);
   Matrix poses;
   if (is_matrix_file(path)) {
     poses = read_matrix(path);
   } else if (const TensorFile file(path); file.contains("poses")) {
     poses = file.matrix("poses");
   } else if (file.contains("time")) {
-    poses = frames_of_trajectory(path, mesh);
+    poses = frames_of_trajectory(path, nodes);
   } else {
     throw InputError(path.string() + ": there is no array 'poses', and it is no trajectory");
   }

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Training poses from files.
 
-#include <physics/tet_mesh.hpp>
+#include <core/types.hpp>
 
 #include <filesystem>
 
@@ -10,8 +10,8 @@ namespace supple {
 /// One pose a column, as ReduceOptions::given_poses takes them: the array "poses" of a tensor file or a matrix as
 /// read_matrix takes it (NumPy, Matrix Market), coordinates in the subspace (d × T) or displacements of all nodes
 /// (3n × T); or a trajectory of supple simulate, whose frames become displacements, but for those at rest.
-/// \param mesh  of the object to be reduced; a trajectory must be of the same.
+/// \param nodes  of the object to be reduced; a trajectory must be of the same.
 /// \throws InputError naming the file, the pose and what was expected; a pose at rest has no force to fit.
-Matrix read_poses(const std::filesystem::path& path, const TetMesh& mesh);
+Matrix read_poses(const std::filesystem::path& path, const Points& nodes);
 
 }  // namespace supple

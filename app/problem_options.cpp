@@ -10,14 +10,26 @@ namespace supple {
 
 namespace {
 
-std::vector<Index> fixed_nodes(const ProblemOptions& problem, const TetMesh& mesh) {
-  std::set<Index> nodes;
-  const auto fix = [&](const std::vector<Index>& some) { nodes.insert(some.begin(), some.end()); };
-  for (const std::string& rule : problem.fix) fix(select_nodes(mesh, rule));
-  for (const std::string& box : problem.fix_box) fix(nodes_in_box(mesh, box));
-  for (const std::string& region : problem.fix_region) fix(nodes_of_region(mesh, region));
-  for (const std::filesystem::path& file : problem.fix_file) fix(read_node_set(mesh, file));
-  return {nodes.begin(), nodes.end()};
+std::vector<Index> held_nodes(const ProblemOptions& problem, const NamedMesh& named) {
+  const Points& nodes = named.nodes();
+  std::set<Index> held;
+  const auto fix = [&](const std::vector<Index>& some) { held.insert(some.begin(), some.end()); };
+  for (const std::string& rule : problem.fix) fix(select_nodes(nodes, rule));
+  for (const std::string& box : problem.fix_box) fix(nodes_in_box(nodes, box));
+  for (const std::string& region : problem.fix_region) {
+    const auto* mesh = std::get_if<TetMesh>(&named.mesh);
+    if (!mesh) throw InputError("--fix-region '" + region + "': a surface has no regions");
+    fix(nodes_of_region(*mesh, region));
+  }
+  for (const std::filesystem::path& file : problem.fix_file) fix(read_node_set(nodes, file));
+  return {held.begin(), held.end()};
+}
+
+RayleighDamping read_damping(const ProblemOptions& problem) {
+  const RayleighDamping damping{option_quantity("--damping-alpha", problem.damping_alpha, "1/s"),
+                                option_quantity("--damping-beta", problem.damping_beta, "s")};
+  if (damping.alpha < 0 || damping.beta < 0) throw InputError("damping is negative, expected 0 or more");
+  return damping;
 }
 
 struct Material {
@@ -25,11 +37,14 @@ struct Material {
   double density = 0;
 };
 
+Material base_material(const ProblemOptions& problem) {
+  return {{option_quantity("--young", problem.young, "Pa"), option_quantity("--poisson", problem.poisson, "1")},
+          option_quantity("--density", problem.density, "kg/m^3")};
+}
+
 /// One material for the object, and others for the regions that the file of --materials names.
 void set_materials(const ProblemOptions& problem, Solid& solid) {
-  const Material base{
-      {option_quantity("--young", problem.young, "Pa"), option_quantity("--poisson", problem.poisson, "1")},
-      option_quantity("--density", problem.density, "kg/m^3")};
+  const Material base = base_material(problem);
   std::vector<Material> materials{base};
   const TetMesh& mesh = solid.mesh;
   if (problem.materials) {
@@ -68,6 +83,12 @@ void set_materials(const ProblemOptions& problem, Solid& solid) {
   }
 }
 
+double shell_thickness(const ProblemOptions& problem, const TriangleMesh& mesh) {
+  const std::string text = problem.thickness.value_or("1%");
+  if (!text.ends_with('%')) return option_quantity("--thickness", text, "m");
+  return option_quantity("--thickness", text, "1") * bounding_box(mesh.nodes).diagonal();
+}
+
 InvertedPoses inverted_poses(const std::string& word) {
   return word == "keep"     ? InvertedPoses::Keep
          : word == "shrink" ? InvertedPoses::Shrink
@@ -83,19 +104,29 @@ const char* to_text(InvertedPoses rule) {
 
 }  // namespace
 
-Solid load_solid(const ProblemOptions& problem, const TetMesh& mesh) {
+Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
+  const std::vector<Index> held = held_nodes(problem, named);
+  const RayleighDamping damping = read_damping(problem);
+  if (const auto* surface = std::get_if<TriangleMesh>(&named.mesh)) {
+    if (problem.law != "stvk")
+      throw InputError("--material " + problem.law + " is for solids; a surface is a discrete shell");
+    if (problem.materials)
+      throw InputError(problem.materials->string() + ": a surface has no regions, so there is nothing to tell apart");
+    const Material base = base_material(problem);
+    Shell shell = isotropic_shell(*surface, base.moduli, shell_thickness(problem, *surface), held, base.density);
+    shell.damping = damping;
+    return shell;
+  }
+  if (problem.thickness) throw InputError("--thickness is for surfaces; the mesh has tets");
   Solid solid;
-  solid.mesh = mesh;
-  solid.fixed_nodes = fixed_nodes(problem, solid.mesh);
-  solid.damping = {option_quantity("--damping-alpha", problem.damping_alpha, "1/s"),
-                   option_quantity("--damping-beta", problem.damping_beta, "s")};
-  if (solid.damping.alpha < 0 || solid.damping.beta < 0)
-    throw InputError("damping is negative, expected 0 or more");
+  solid.mesh = std::get<TetMesh>(named.mesh);
+  solid.fixed_nodes = held;
+  solid.damping = damping;
   set_materials(problem, solid);
   return solid;
 }
 
-ReduceOptions reduce_options(const ProblemOptions& problem, const TetMesh& mesh) {
+ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named) {
   ReduceOptions options = problem.recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
   options.subspace = problem.subspace;
   options.seed = problem.seed;
@@ -107,7 +138,7 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const TetMesh& mesh)
   if (problem.norm) options.norm = *problem.norm == "mass" ? ForceNorm::Mass : ForceNorm::Stiffness;
   options.poses.inverted = inverted_rule(
       problem.law, problem.inverted ? std::optional(inverted_poses(*problem.inverted)) : std::nullopt);
-  if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, mesh);
+  if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, named.nodes());
   return options;
 }
 
@@ -135,6 +166,7 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options) {
     for (const std::filesystem::path& file : files) json[key].push_back(file.string());
   };
   add_files("fix_file", problem.fix_file);
+  if (problem.thickness) json["thickness"] = *problem.thickness;
   if (problem.materials) json["materials"] = problem.materials->string();
   if (problem.poses_file) json["poses_file"] = problem.poses_file->string();
   return json;

@@ -2,6 +2,7 @@
 /// \file The object and its fitting problem as the command line names them, for all commands that pose one.
 
 #include <app/json_report.hpp>
+#include <app/mesh_source.hpp>
 #include <reduction/reduce.hpp>
 
 #include <cstdint>
@@ -17,6 +18,7 @@ struct ProblemOptions {
   std::string mesh;  ///< file or built-in
 
   std::string law = "stvk", young = "1e5", poisson = "0.4", density = "1000";
+  std::optional<std::string> thickness;            ///< of a surface: a length, or a share of the diagonal
   std::optional<std::filesystem::path> materials;  ///< other values for regions, JSON
   std::string damping_alpha = "0", damping_beta = "0";
   std::vector<std::string> fix, fix_box, fix_region;
@@ -32,10 +34,10 @@ struct ProblemOptions {
 };
 
 /// The mesh with the materials, damping and held nodes of the options.
-Solid load_solid(const ProblemOptions& problem, const TetMesh& mesh);
+Body load_body(const ProblemOptions& problem, const NamedMesh& named);
 /// The recipe with what the options change; selector and size are left to the command.
-/// \param mesh  of the object, which a file of poses must fit.
-ReduceOptions reduce_options(const ProblemOptions& problem, const TetMesh& mesh);
+/// \param named  the object's mesh, which a file of poses must fit.
+ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named);
 /// What poses the problem, and nothing that differs between two runs of the same job.
 Json problem_json(const ProblemOptions& problem, const ReduceOptions& options);
 

@@ -17,8 +17,8 @@ namespace {
 
 constexpr Index largest_search = 1000;  // points, if only a target error is given
 
-ReduceOptions method(const ReduceCommand& command, const TetMesh& mesh) {
-  ReduceOptions options = reduce_options(command, mesh);
+ReduceOptions method(const ReduceCommand& command, const NamedMesh& named) {
+  ReduceOptions options = reduce_options(command, named);
   if (command.target_error) {
     options.target_error = *command.target_error;
     options.points = largest_search;
@@ -45,11 +45,12 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   json["mesh"] = {{"source", command.mesh},
                   {"format", named.notes.format},
                   {"nodes", report.nodes},
-                  {"tets", report.tets},
+                  {component_name(model.body), report.components},
                   {"fixed_nodes", report.fixed_nodes},
-                  {"mass", model.solid.nodal_mass().sum()},
-                  {"diagonal", bounding_box(model.solid.mesh.nodes).diagonal()},
+                  {"mass", nodal_mass(model.body).sum()},
+                  {"diagonal", bounding_box(node_positions(model.body)).diagonal()},
                   {"warnings", named.notes.warnings}};
+  if (std::holds_alternative<Shell>(model.body)) json["mesh"]["triangles"] = named.num_elements();
   json["dimension"] = report.dimension;
   json["points"] = report.points;
   json["training_error"] = report.training_error;
@@ -83,25 +84,28 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   return json;
 }
 
-/// The object with its selected tets as balls.
+/// The object with its selected components as balls.
 void draw_selection(const std::filesystem::path& path, const ReducedModel& model,
                     const ReduceReport& report) {
-  const TetMesh& mesh = model.solid.mesh;
+  const Points& nodes = node_positions(model.body);
   Points centres(static_cast<Index>(model.indices.size()), 3);
-  for (std::size_t k = 0; k < model.indices.size(); ++k) {
-    const Tet& tet = mesh.tets[model.indices[k]];
-    centres.row(k) = 0.25 * (mesh.nodes.row(tet[0]) + mesh.nodes.row(tet[1]) + mesh.nodes.row(tet[2]) +
-                             mesh.nodes.row(tet[3]));
-  }
-  const Surface surface(mesh);
-  PictureObject object{.positions = surface.rows(mesh.nodes), .triangles = surface.triangles};
+  with_force_model(model.body, [&](const auto& force) {
+    for (std::size_t k = 0; k < model.indices.size(); ++k) {
+      const auto stencil = force->stencil(model.indices[k]);
+      Point sum = Point::Zero();
+      for (const Index v : stencil) sum += nodes.row(v).transpose();
+      centres.row(k) = sum.transpose() / static_cast<double>(stencil.size());
+    }
+  });
+  const Surface surface(model.body);
+  PictureObject object{.positions = surface.rows(nodes), .triangles = surface.triangles};
   object.markers = centres;
-  object.caption = std::to_string(report.points) + " of " + shown_count(report.tets) +
-                   " tets, training error " + shown_percent(report.training_error, 2);
+  object.caption = std::to_string(report.points) + " of " + shown_count(report.components) +
+                   " " + std::string(component_name(model.body)) + ", training error " + shown_percent(report.training_error, 2);
   write_picture(path, {object});
 }
 
-void draw_error_history(const std::filesystem::path& path, const ReduceReport& report) {
+void draw_error_history(const std::filesystem::path& path, const std::string& kind, const ReduceReport& report) {
   const std::vector<SelectionStep>& history = report.selection.history;
   const Index count = static_cast<Index>(history.size());
   if (count == 0) return;
@@ -111,7 +115,7 @@ void draw_error_history(const std::filesystem::path& path, const ReduceReport& r
     training.y[k] = 100 * history[k].training_error;
   }
   Plot plot{.title = "Force error while choosing " + std::to_string(report.points) + " of " +
-                     shown_count(report.tets) + " tets",
+                     shown_count(report.components) + " " + kind,
             .x = {.label = "iteration"},
             .y = {.label = "relative force error [%]", .scale = Scale::Log},
             .series = {training}};
@@ -123,7 +127,7 @@ void draw_error_history(const std::filesystem::path& path, const ReduceReport& r
   draw_plot(path, plot);
 }
 
-void draw_spectrum(const std::filesystem::path& path, const ReduceReport& report) {
+void draw_spectrum(const std::filesystem::path& path, const std::string& kind, const ReduceReport& report) {
   const auto hertz = [](const Vector& eigenvalues) -> Vector {
     return eigenvalues.cwiseMax(0).cwiseSqrt() / (2 * std::numbers::pi);
   };
@@ -133,19 +137,20 @@ void draw_spectrum(const std::filesystem::path& path, const ReduceReport& report
   draw_plot(path, {.title = "Softest frequencies of the reduced model at rest",
                    .x = {.label = "flexible mode", .low = 0.5, .high = number.size() + 0.5},
                    .y = {.label = "frequency [Hz]", .low = 0.0},
-                   .series = {{"all tets", number, hertz(report.exact_eigenvalues), PlotStyle::LinePoints},
-                              {std::to_string(report.points) + " selected tets", number,
+                   .series = {{"all " + kind, number, hertz(report.exact_eigenvalues), PlotStyle::LinePoints},
+                              {std::to_string(report.points) + " selected " + kind, number,
                                hertz(report.fitted_eigenvalues), PlotStyle::Markers}}});
 }
 
 void print_summary(const ReduceCommand& command, const ReducedModel& model, const ReduceReport& report) {
+  const std::string kind(component_name(model.body));
   Rows rows{
-      {"object", shown_count(report.nodes) + " nodes, " + shown_count(report.tets) + " tets, " +
+      {"object", shown_count(report.nodes) + " nodes, " + shown_count(report.components) + " " + kind + ", " +
                      (report.fixed_nodes > 0 ? shown_count(report.fixed_nodes) + " nodes fixed" : "free")},
       {"subspace", "dimension " + std::to_string(report.dimension) + " from " +
                        std::to_string(report.omega.size()) + " modes" +
                        (report.rigid_modes > 0 ? " (" + std::to_string(report.rigid_modes) + " rigid)" : "")},
-      {"points", std::to_string(report.points) + " tets"},
+      {"points", std::to_string(report.points) + " " + kind},
       {"training error", shown_percent(report.training_error)}};
   std::string held_out;
   for (const auto& [share, error] : report.held_out)
@@ -173,13 +178,13 @@ void ReduceCommand::run() const {
   Stopwatch watch;
   const NamedMesh named = load_mesh(mesh);
   for (const std::string& warning : named.notes.warnings) warn(mesh + ": " + warning);
-  const Solid solid = load_solid(*this, named.mesh);
-  const ReduceOptions options = method(*this, named.mesh);
+  const Body body = load_body(*this, named);
+  const ReduceOptions options = method(*this, named);
   if (!plots.empty()) make_folder(plots);
   const double read_seconds = watch.seconds();
 
   ReduceReport report;
-  ReducedModel result = reduce(solid, options, &report, progress_bar());
+  ReducedModel result = reduce(body, options, &report, progress_bar());
   clear_progress();
   result.provenance = {{"version", SUPPLE_VERSION},
                        {"mesh", mesh},
@@ -203,8 +208,9 @@ void ReduceCommand::run() const {
   watch.restart();
   if (!picture.empty()) draw_selection(picture, result, report);
   if (!plots.empty()) {
-    draw_error_history(plots / "error.png", report);
-    draw_spectrum(plots / "spectrum.png", report);
+    const std::string kind(component_name(body));
+    draw_error_history(plots / "error.png", kind, report);
+    draw_spectrum(plots / "spectrum.png", kind, report);
   }
   if (!picture.empty() || !plots.empty()) report.seconds.emplace_back("pictures", watch.seconds());
   report.total_seconds = total.seconds();

@@ -2,7 +2,6 @@
 #include <core/check.hpp>
 #include <io/json_fields.hpp>
 #include <io/node_sets.hpp>
-#include <physics/mass.hpp>
 
 namespace supple {
 
@@ -23,9 +22,9 @@ Point TimedSprings::displacement(double t) const {
   return ((1 - share) * displacements.row(after - 1) + share * displacements.row(after)).transpose();
 }
 
-Index nearest_node(const TetMesh& mesh, const Point& point) {
+Index nearest_node(const Points& nodes, const Point& point) {
   Index nearest = 0;
-  (mesh.nodes.rowwise() - point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+  (nodes.rowwise() - point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
   return nearest;
 }
 
@@ -40,35 +39,35 @@ TimeSpan read_span(const JsonFields& fields) {
   return span;
 }
 
-Index read_node(const JsonFields& fields, const TetMesh& mesh) {
-  return fields.integer("node", between(0, static_cast<double>(mesh.num_nodes() - 1)));
+Index read_node(const JsonFields& fields, const Body& body) {
+  return fields.integer("node", between(0, static_cast<double>(num_nodes(body) - 1)));
 }
 
 /// The nodes that "node", "at" or "nodes" names, exactly one of them, with their shares of the whole: by
 /// mass, so that a finer mesh is not pulled harder.
-std::vector<std::pair<Index, double>> read_nodes(const JsonFields& fields, const TetMesh& mesh) {
+std::vector<std::pair<Index, double>> read_nodes(const JsonFields& fields, const Body& body) {
   if (fields.contains("node") + fields.contains("at") + fields.contains("nodes") != 1)
     throw InputError(fields.source() + ": " + fields.place() + " needs one of 'node', 'at' and 'nodes'");
-  if (fields.contains("node")) return {{read_node(fields, mesh), 1.0}};
-  if (fields.contains("at")) return {{nearest_node(mesh, fields.point("at")), 1.0}};
+  if (fields.contains("node")) return {{read_node(fields, body), 1.0}};
+  if (fields.contains("at")) return {{nearest_node(node_positions(body), fields.point("at")), 1.0}};
   std::vector<Index> nodes;
   try {
-    nodes = select_nodes(mesh, fields.text("nodes"));
+    nodes = select_nodes(node_positions(body), fields.text("nodes"));
   } catch (const InputError& error) {
     fields.fail("nodes", std::string("selects nothing: ") + error.what());
   }
-  const Vector volume = lumped_mass(mesh, 1.0);
+  const Vector mass = nodal_mass(body);
   std::vector<std::pair<Index, double>> shares;
   double sum = 0;
-  for (const Index v : nodes) sum += volume[v];
-  for (const Index v : nodes) shares.emplace_back(v, volume[v] / sum);
+  for (const Index v : nodes) sum += mass[v];
+  for (const Index v : nodes) shares.emplace_back(v, mass[v] / sum);
   return shares;
 }
 
-TimedSprings read_springs(const JsonFields& fields, const TetMesh& mesh) {
+TimedSprings read_springs(const JsonFields& fields, const Body& body) {
   TimedSprings result;
   const double stiffness = fields.number("stiffness", positive, "N/m");
-  for (const auto& [node, share] : read_nodes(fields, mesh))
+  for (const auto& [node, share] : read_nodes(fields, body))
     result.springs.emplace_back(node, share * stiffness);
   result.when = read_span(fields);
   const bool target = fields.contains("target"), displacement = fields.contains("displacement"),
@@ -82,7 +81,7 @@ TimedSprings read_springs(const JsonFields& fields, const TetMesh& mesh) {
   if (target) {
     if (result.springs.size() > 1)
       fields.fail("target", "is one point for several nodes; give a 'displacement'");
-    result.displacements = fields.point("target").transpose() - mesh.nodes.row(result.springs.front().first);
+    result.displacements = fields.point("target").transpose() - node_positions(body).row(result.springs.front().first);
   }
   if (path) {
     const std::vector<JsonFields> keys = fields.objects("path");
@@ -102,7 +101,7 @@ TimedSprings read_springs(const JsonFields& fields, const TetMesh& mesh) {
 
 }  // namespace
 
-Scene read_scene(const std::filesystem::path& path, const TetMesh& mesh) {
+Scene read_scene(const std::filesystem::path& path, const Body& body) {
   const JsonFields file = JsonFields::read(path);
   Scene scene;
   scene.description = file.text_or("description", path.filename().string());
@@ -117,12 +116,12 @@ Scene read_scene(const std::filesystem::path& path, const TetMesh& mesh) {
   for (const JsonFields& fields : file.objects_if("forces")) {
     TimedLoads timed{{}, read_span(fields)};
     const Point force = fields.point("force", "N");
-    for (const auto& [node, share] : read_nodes(fields, mesh))
+    for (const auto& [node, share] : read_nodes(fields, body))
       timed.loads.forces.push_back({node, share * force});
     scene.loads.push_back(std::move(timed));
   }
   for (const JsonFields& fields : file.objects_if("springs"))
-    scene.springs.push_back(read_springs(fields, mesh));
+    scene.springs.push_back(read_springs(fields, body));
 
   if (const auto damping = file.object_if("damping"))
     scene.damping = {damping->number_or("alpha", 0, non_negative, "1/s"),
@@ -140,7 +139,7 @@ Scene read_scene(const std::filesystem::path& path, const TetMesh& mesh) {
   if (const auto output = file.object_if("output")) {
     if (output->contains("every")) scene.every = output->integer("every", at_least(1));
     if (output->contains("track"))
-      scene.track = output->integers("track", between(0, static_cast<double>(mesh.num_nodes() - 1)));
+      scene.track = output->integers("track", between(0, static_cast<double>(num_nodes(body) - 1)));
   }
   file.finish();
   return scene;

@@ -4,7 +4,6 @@
 #include <core/types.hpp>
 #include <physics/loads.hpp>
 #include <physics/newmark.hpp>
-#include <physics/tet_mesh.hpp>
 #include <reduction/reduced_model.hpp>
 
 #include <filesystem>
@@ -54,10 +53,10 @@ struct Scene {
 };
 
 /// \throws InputError naming file, place and what was expected there; unknown keys are refused.
-Scene read_scene(const std::filesystem::path& path, const TetMesh& mesh);
+Scene read_scene(const std::filesystem::path& path, const Body& body);
 
 /// The node closest to a point.
-Index nearest_node(const TetMesh& mesh, const Point& point);
+Index nearest_node(const Points& nodes, const Point& point);
 
 /// A scene for any model: pulled for half a period T of its softest flexible mode, then released, for three
 /// periods in steps of T/60. Held objects are pulled sideways as by gravity, along the axis that gives way

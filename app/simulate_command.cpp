@@ -1,4 +1,5 @@
 #include <app/exit_guard.hpp>
+#include <app/frames.hpp>
 #include <app/json_report.hpp>
 #include <app/simulate_command.hpp>
 #include <app/simulation.hpp>
@@ -31,9 +32,9 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
   if (command.every) scene.every = *command.every;
   if (!command.track.empty()) scene.track = command.track;
   for (const Index node : scene.track)
-    if (node < 0 || node >= model.solid.mesh.num_nodes())
+    if (node < 0 || node >= num_nodes(model.body))
       throw InputError("--track: there is no node " + std::to_string(node) + ", expected 0 to " +
-                       std::to_string(model.solid.mesh.num_nodes() - 1));
+                       std::to_string(num_nodes(model.body) - 1));
   if (!scene.duration || !scene.step || scene.track.empty()) {
     const Scene pluck = pluck_scene(model);
     if (!scene.duration) scene.duration = pluck.duration;
@@ -51,7 +52,7 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
   options.every = scene.every.value_or((options.num_steps + 99) / 100);
   if (options.every < 1)
     throw InputError("--every is " + std::to_string(options.every) + ", expected at least 1");
-  options.newmark.damping = scene.damping.value_or(model.solid.damping);
+  options.newmark.damping = scene.damping.value_or(damping(model.body));
   options.newmark.solver =
       scene.solver.value_or(command.full ? NonlinearSolver::Newton : NonlinearSolver::Broyden);
   if (command.full && options.newmark.solver == NonlinearSolver::Broyden) {
@@ -153,91 +154,6 @@ void draw_energies(const std::filesystem::path& path, const Simulation& run) {
                               {"work of loads", time, work, PlotStyle::DashedLine}}});
 }
 
-/// The start, the frame of the largest displacement, and the one after it that is farthest from that.
-std::vector<Index> telling_frames(const std::vector<Points>& surface_displacement) {
-  Index largest = 0, farthest = -1;
-  double most = 0, distance = 0;
-  const Index count = static_cast<Index>(surface_displacement.size());
-  for (Index f = 0; f < count; ++f)
-    if (const double norm = surface_displacement[f].norm(); norm > most) {
-      most = norm;
-      largest = f;
-    }
-  for (Index f = largest + 1; f < count; ++f)
-    if (const double norm = (surface_displacement[f] - surface_displacement[largest]).norm();
-        norm > distance) {
-      distance = norm;
-      farthest = f;
-    }
-  std::vector<Index> frames{0};
-  if (largest > 0) frames.push_back(largest);
-  if (farthest > 0) frames.push_back(farthest);
-  return frames;
-}
-
-void draw_frames(const std::filesystem::path& path, const Points& rest,
-                 const std::vector<Triangle>& triangles, const std::vector<Points>& displacement,
-                 const std::vector<double>& times) {
-  std::vector<PictureObject> objects;
-  for (const Index f : telling_frames(displacement)) {
-    PictureObject object{.positions = rest + displacement[f], .triangles = triangles};
-    object.scalar = displacement[f].rowwise().norm();
-    char time[32];
-    std::snprintf(time, sizeof time, "t = %.3f s", times[f]);
-    object.caption = time;
-    objects.push_back(std::move(object));
-  }
-  PictureOptions options;
-  options.width = 1600;
-  options.height = 800;
-  options.scale.label = "displacement [m]";
-  options.scale.low = 0.0;
-  options.scale.high = scale_end(objects);
-  write_picture(path, objects, options);
-}
-
-/// Frames for ParaView and the picture. \return seconds of reconstruction alone
-double write_frames(const SimulateCommand& command, const ReducedModel& model, const Trajectory& trajectory,
-                    const Progress& progress) {
-  const TetMesh& mesh = model.solid.mesh;
-  const Surface surface(mesh);
-  const Points rest = surface.rows(mesh.nodes);
-  const std::filesystem::path list = command.output / "series.pvd";
-  std::optional<VtuSeries> series;
-  if (command.frames != "none") {
-    const ExitGuard guard;
-    if (std::filesystem::exists(list))  // an earlier run may have left more frames than this one has
-      for (const auto& entry : std::filesystem::directory_iterator(command.output))
-        if (entry.path().extension() == ".vtu" && entry.path().filename().string().starts_with("series_"))
-          std::filesystem::remove(entry.path());
-    series.emplace(list);
-  }
-  std::vector<Points> surface_displacement;
-  double seconds = 0;
-  for (Index f = 0; f < trajectory.num_frames(); ++f) {
-    const Stopwatch watch;
-    const Vector u = frame_displacement(trajectory, model, f);
-    seconds += watch.seconds();
-    surface_displacement.push_back(surface.rows(as_points(u)));
-    if (series) {
-      const Vector v = frame_velocity(trajectory, model, f);
-      const ExitGuard guard;
-      if (command.frames == "tets")
-        series->add(trajectory.time[f], mesh.nodes + as_points(u), mesh.tets,
-                    {.point_data = {vector_field("displacement [m]", u), vector_field("velocity [m/s]", v)}});
-      else
-        series->add(trajectory.time[f], rest + surface_displacement.back(), surface.triangles,
-                    {.point_data = {{"displacement [m]", surface_displacement.back()},
-                                    {"velocity [m/s]", surface.rows(as_points(v))}}});
-    }
-    tell(progress, "frames", static_cast<double>(f + 1) / static_cast<double>(trajectory.num_frames()));
-  }
-  tell(progress, "picture", 0);
-  draw_frames(command.output / "picture.png", rest, surface.triangles, surface_displacement,
-              {trajectory.time.begin(), trajectory.time.end()});
-  return seconds;
-}
-
 Json report_json(const SimulateCommand& command, const Scene& scene, const SimulationOptions& options,
                  const Simulation& run, const Effort& effort) {
   Json json;
@@ -308,13 +224,13 @@ void SimulateCommand::run() const {
     watch.restart();
   };
   const ReducedModel reduced = load_model(model);
-  Scene what = scene ? read_scene(*scene, reduced.solid.mesh) : pluck_scene(reduced);
+  Scene what = scene ? read_scene(*scene, reduced.body) : pluck_scene(reduced);
   const SimulationOptions options = decide(*this, reduced, what);
   if (!output.empty()) make_folder(output);
   finish("read model");
 
   const Progress progress = progress_bar();
-  const Simulation result = full ? simulate_full(reduced.solid, what, options, progress)
+  const Simulation result = full ? simulate_full(reduced.body, what, options, progress)
                                  : simulate_reduced(reduced, what, options, progress);
   seconds.emplace_back("setup", result.setup_seconds);
   seconds.emplace_back("time steps", result.integration_seconds);
@@ -334,7 +250,7 @@ void SimulateCommand::run() const {
       draw_energies(output / "energy.png", result);
     else
       warn("gnuplot is not installed: there will be no energy.png");
-    reconstruction = write_frames(*this, reduced, trajectory, progress);
+    reconstruction = write_frames(output, frames, reduced, trajectory, progress);
     finish("results");
   }
   clear_progress();

@@ -3,13 +3,12 @@
 
 namespace supple {
 
-Simulation simulate_full(const Solid& solid, const Scene& scene, const SimulationOptions& options,
+Simulation simulate_full(const Body& body, const Scene& scene, const SimulationOptions& options,
                          const Progress& progress) {
-  return with_law(solid.law, [&]<template <typename> class Material>() {
+  return with_force_model(body, [&]<typename Model>(const std::shared_ptr<const Model>& model) {
     const Stopwatch watch;
     tell(progress, "full system", 0);
-    const FullSystem<TetElasticity<Material>> system(make_model<Material>(solid), solid.nodal_mass(),
-                                                     solid.fixed_nodes);
+    const FullSystem<Model> system(model, nodal_mass(body), fixed_nodes(body));
     const double construction = watch.seconds();
     Simulation result = integrate(
         system, scene, options, [&](VectorIn u) { return system.expand(u); },

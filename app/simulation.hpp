@@ -41,7 +41,7 @@ struct Simulation {
 /// From rest at t = 0. \throws SolverError if the system has no stable rest state.
 Simulation simulate_reduced(const ReducedModel& model, const Scene& scene, const SimulationOptions& options,
                             const Progress& progress);
-Simulation simulate_full(const Solid& solid, const Scene& scene, const SimulationOptions& options,
+Simulation simulate_full(const Body& body, const Scene& scene, const SimulationOptions& options,
                          const Progress& progress);
 
 }  // namespace supple

@@ -5,8 +5,17 @@
 
 namespace supple {
 
-Surface::Surface(const TetMesh& mesh) : triangles(boundary_faces(mesh)) {
-  std::vector<Index> number(mesh.num_nodes(), -1);
+namespace {
+
+std::vector<Triangle> visible_triangles(const Body& body) {
+  if (const Shell* shell = std::get_if<Shell>(&body)) return shell->mesh.triangles;
+  return boundary_faces(std::get<Solid>(body).mesh);
+}
+
+}  // namespace
+
+Surface::Surface(const Body& body) : triangles(visible_triangles(body)) {
+  std::vector<Index> number(num_nodes(body), -1);
   for (Triangle& triangle : triangles)
     for (Index& v : triangle) {
       if (number[v] < 0) {

@@ -2,19 +2,19 @@
 /// \file The surface of a mesh, as pictures and ParaView see it.
 
 #include <io/picture.hpp>
-#include <physics/tet_mesh.hpp>
+#include <physics/body.hpp>
 
 #include <filesystem>
 #include <vector>
 
 namespace supple {
 
-/// The boundary alone: triangles over `nodes`, which are indices into the mesh.
+/// The boundary of a solid, or a shell itself: triangles over `nodes`, which are indices into the mesh.
 struct Surface {
   std::vector<Triangle> triangles;
   std::vector<Index> nodes;
 
-  explicit Surface(const TetMesh& mesh);
+  explicit Surface(const Body& body);
   /// The rows of the surface's nodes.
   Points rows(const Points& all) const;
 };

@@ -120,7 +120,7 @@ ReducedModel load_model_of(const Trajectory& trajectory, const std::filesystem::
     throw InputError(source.string() + ": its model " + trajectory.model.string() +
                      " has changed since; run supple simulate again");
   ReducedModel model = load_model(trajectory.model);
-  const Index expected = trajectory.reduced ? model.dim() : 3 * model.solid.mesh.num_nodes();
+  const Index expected = trajectory.reduced ? model.dim() : 3 * num_nodes(model.body);
   if (trajectory.u.cols() != expected)
     throw InputError(source.string() + ": frames have " + std::to_string(trajectory.u.cols()) +
                      " coordinates, expected " + std::to_string(expected));

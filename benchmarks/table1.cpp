@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
   const TetMesh mesh = is_builtin(mesh_name) ? builtin_mesh(mesh_name) : read_tet_mesh(mesh_name);
   std::vector<Index> fixed;
   for (const std::string& rule : fix) {
-    const std::vector<Index> nodes = select_nodes(mesh, rule);
+    const std::vector<Index> nodes = select_nodes(mesh.nodes, rule);
     fixed.insert(fixed.end(), nodes.begin(), nodes.end());
   }
   std::sort(fixed.begin(), fixed.end());
@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
   ReducedModel model = reduce(solid, options, &report);
 
   json out{{"mesh", mesh_name},
-           {"tets", report.tets},
+           {"tets", report.components},
            {"d", report.dimension},
            {"modes", modes},
            {"recipe", recipe},

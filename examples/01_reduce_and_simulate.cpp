@@ -13,16 +13,16 @@ using namespace supple;
 
 int main() {
   const TetMesh mesh = builtin_mesh("bar:24x4x4");  // or read_tet_mesh("dragon.msh")
-  const Solid solid = isotropic_solid(mesh, {.young = 2e5, .poisson = 0.4}, select_nodes(mesh, "x<1%"));
+  const Solid solid = isotropic_solid(mesh, {.young = 2e5, .poisson = 0.4}, select_nodes(mesh.nodes, "x<1%"));
 
   ReduceReport report;
   const ReducedModel model = reduce(solid, {.modes = 8, .points = 63}, &report);
   std::printf("%td of %td tets stand for all: error %.4f in training, %.4f held out\n", report.points,
-              report.tets, report.training_error, report.held_out_error);
+              report.components, report.training_error, report.held_out_error);
   save_model("bar.supple",
              model);  // load_model() reads it back; so do `supple simulate` and any safetensors reader
 
-  const Index tip = select_nodes(mesh, "x>99%").front();
+  const Index tip = select_nodes(mesh.nodes, "x>99%").front();
   return with_reduced_system(model, [&](const auto& system) {
     Newmark newmark(system, 0.01, {.damping = {.beta = 0.002}, .solver = NonlinearSolver::Broyden});
     State state = State::at_rest(system.dim());

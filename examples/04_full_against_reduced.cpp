@@ -43,8 +43,8 @@ Motion simulate(const System& system, NonlinearSolver solver, const Tip& tip) {
 
 int main() {
   const TetMesh mesh = builtin_mesh("bar:24x4x4");
-  const Solid solid = isotropic_solid(mesh, {.young = 2e5, .poisson = 0.4}, select_nodes(mesh, "x<1%"));
-  const Index watched = 3 * select_nodes(mesh, "x>99%").front() + 2;
+  const Solid solid = isotropic_solid(mesh, {.young = 2e5, .poisson = 0.4}, select_nodes(mesh.nodes, "x<1%"));
+  const Index watched = 3 * select_nodes(mesh.nodes, "x>99%").front() + 2;
 
   const FullSystem full(make_model<StVenantKirchhoff>(solid), solid.nodal_mass(), solid.fixed_nodes);
   const Motion reference =

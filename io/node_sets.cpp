@@ -1,4 +1,5 @@
 #include <core/check.hpp>
+#include <io/cursor.hpp>
 #include <io/index_file.hpp>
 #include <io/node_sets.hpp>
 
@@ -31,17 +32,17 @@ std::optional<double> to_finite(std::string_view text) {
 }
 
 template <typename Is>
-std::vector<Index> nodes_where(const TetMesh& mesh, std::string_view rule, const Is& is_selected) {
-  std::vector<Index> nodes;
-  for (Index v = 0; v < mesh.num_nodes(); ++v)
-    if (is_selected(v)) nodes.push_back(v);
-  if (nodes.empty()) fail(rule, "selects no node");
-  return nodes;
+std::vector<Index> nodes_where(Index num_nodes, std::string_view rule, const Is& is_selected) {
+  std::vector<Index> selected;
+  for (Index v = 0; v < num_nodes; ++v)
+    if (is_selected(v)) selected.push_back(v);
+  if (selected.empty()) fail(rule, "selects no node");
+  return selected;
 }
 
 }  // namespace
 
-std::vector<Index> select_nodes(const TetMesh& mesh, std::string_view rule) {
+std::vector<Index> select_nodes(const Points& nodes, std::string_view rule) {
   const std::string expectation =
       "expected an axis, < <= > or >=, and a coordinate or a share, such as y<4% or x>=0.25";
   std::string_view rest = trim(rule);
@@ -55,15 +56,15 @@ std::vector<Index> select_nodes(const TetMesh& mesh, std::string_view rule) {
   const std::optional<double> value = to_finite(is_share ? rest.substr(0, rest.size() - 1) : rest);
   if (!value) fail(rule, expectation);
 
-  const BoundingBox box = bounding_box(mesh.nodes);
+  const BoundingBox box = bounding_box(nodes);
   const double bound = is_share ? std::lerp(box.lower[axis], box.upper[axis], *value / 100) : *value;
-  return nodes_where(mesh, rule, [&](Index v) {
-    const double x = mesh.nodes(v, axis);
+  return nodes_where(nodes.rows(), rule, [&](Index v) {
+    const double x = nodes(v, axis);
     return (or_equal && x == bound) || (is_below ? x < bound : x > bound);
   });
 }
 
-std::vector<Index> nodes_in_box(const TetMesh& mesh, std::string_view box) {
+std::vector<Index> nodes_in_box(const Points& nodes, std::string_view box) {
   const std::string expectation = "expected xmin,ymin,zmin:xmax,ymax,zmax";
   std::array<double, 6> bounds;
   std::string_view rest = box;
@@ -78,8 +79,8 @@ std::vector<Index> nodes_in_box(const TetMesh& mesh, std::string_view box) {
   const Point lower(bounds[0], bounds[1], bounds[2]), upper(bounds[3], bounds[4], bounds[5]);
   if ((lower.array() > upper.array()).any())
     fail(box, "a lower bound is above its upper bound; " + expectation);
-  return nodes_where(mesh, box, [&](Index v) {
-    const Point x = mesh.nodes.row(v);
+  return nodes_where(nodes.rows(), box, [&](Index v) {
+    const Point x = nodes.row(v);
     return (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
   });
 }
@@ -113,11 +114,38 @@ std::vector<Index> nodes_of_region(const TetMesh& mesh, std::string_view region)
     }
     fail(region, known.empty() ? "the mesh has no regions" : "no such region; the mesh has " + known);
   }
-  return nodes_where(mesh, region, [&](Index v) { return is_member[v]; });
+  return nodes_where(mesh.num_nodes(), region, [&](Index v) { return is_member[v]; });
 }
 
-std::vector<Index> read_node_set(const TetMesh& mesh, const std::filesystem::path& path) {
-  return read_indices(path, "node", mesh.num_nodes());
+std::vector<Index> read_node_set(const Points& nodes, const std::filesystem::path& path) {
+  return read_indices(path, "node", nodes.rows());
+}
+
+std::vector<Index> nodes_with_label(const Points& nodes, const std::filesystem::path& path, int label) {
+  const std::string text = read_bytes(path);
+  std::vector<Index> selected;
+  Index node = 0, line_number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line(text.data() + begin, end - begin);
+    begin = end + 1;
+    ++line_number;
+    line = trim(line.substr(0, line.find('#')));
+    while (!line.empty() && (line.back() == '\r' || line.back() == '\t')) line = trim(line.substr(0, line.size() - 1));
+    if (line.empty()) continue;
+    int value = 0;
+    const auto [rest, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+    if (error != std::errc() || rest != line.data() + line.size())
+      throw InputError(path.string() + ":" + std::to_string(line_number) + ": expected a whole number, the label of node " +
+                       std::to_string(node));
+    if (node < nodes.rows() && value == label) selected.push_back(node);
+    ++node;
+  }
+  if (node != nodes.rows())
+    throw InputError(path.string() + ": has " + std::to_string(node) + " labels, expected one for each of the " +
+                     std::to_string(nodes.rows()) + " nodes");
+  if (selected.empty()) throw InputError(path.string() + ": no node has the label " + std::to_string(label));
+  return selected;
 }
 
 }  // namespace supple

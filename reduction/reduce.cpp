@@ -74,7 +74,7 @@ ReduceOptions ReduceOptions::paper() {
   return options;
 }
 
-ReducedModel reduce(const Solid& solid, const ReduceOptions& options, ReduceReport* report_out,
+ReducedModel reduce(const Body& body, const ReduceOptions& options, ReduceReport* report_out,
                     const Progress& progress) {
   check(options);
   const Stopwatch total;
@@ -82,8 +82,8 @@ ReducedModel reduce(const Solid& solid, const ReduceOptions& options, ReduceRepo
   report = {};
   Stages stage(report, progress);
   ReducedModel model;
-  model.solid = solid;
-  with_training(solid, options, stage, [&](const auto& training) {
+  model.body = body;
+  with_training(body, options, stage, [&](const auto& training) {
     Selection selection = stage("selection", [&](auto) { return select(training, options, progress); });
     model.subspace = training.subspace;
     model.rest_stiffness = training.rest_stiffness;

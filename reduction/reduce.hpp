@@ -1,5 +1,5 @@
 #pragma once
-/// \file The main job in one call: from a solid to a reduced model with a measured error.
+/// \file The main job in one call: from a solid or a shell to a reduced model with a measured error.
 
 #include <core/progress.hpp>
 #include <reduction/force_fitting.hpp>
@@ -39,7 +39,7 @@ InvertedPoses inverted_rule(std::string_view law, std::optional<InvertedPoses> a
 
 /// Everything that was measured on the way.
 struct ReduceReport {
-  Index nodes = 0, tets = 0, fixed_nodes = 0, dimension = 0, points = 0, poses = 0;
+  Index nodes = 0, components = 0, fixed_nodes = 0, dimension = 0, points = 0, poses = 0;
   Vector omega;  ///< of the modes [rad/s]
   Index rigid_modes = 0, dropped = 0;
   Index inverted_poses = 0, redrawn_poses = 0, shrunk_poses = 0;
@@ -57,7 +57,7 @@ struct ReduceReport {
 
 /// \throws std::invalid_argument for options out of range; InputError for poses without finite force;
 /// SolverError.
-ReducedModel reduce(const Solid& solid, const ReduceOptions& options = {}, ReduceReport* report = nullptr,
+ReducedModel reduce(const Body& body, const ReduceOptions& options = {}, ReduceReport* report = nullptr,
                     const Progress& progress = {});
 
 /// Resident memory of the process: the largest so far [bytes]; 0 where the system does not tell.

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The stages that reduce() and SelectionStudy share: from a solid to the fitting problems of its forces.
+/// \file The stages that reduce() and SelectionStudy share: from a body to the fitting problems of its forces.
 
 #include <core/stopwatch.hpp>
 #include <physics/full_system.hpp>
@@ -14,7 +14,7 @@ namespace supple {
 /// Runs named stages, tells of them and notes their times.
 class Stages {
  public:
-  Stages(ReduceReport& report, const Progress& progress) : report_(report), progress_(progress) {}
+  Stages(ReduceReport& report, Progress progress) : report_(report), progress_(std::move(progress)) {}
 
   template <typename Work>
   decltype(auto) operator()(const std::string& name, Work&& work) {
@@ -33,7 +33,7 @@ class Stages {
 
  private:
   ReduceReport& report_;
-  const Progress& progress_;
+  Progress progress_;
 };
 
 /// What a selection is made for, and what it is judged by.
@@ -79,7 +79,7 @@ Vector Training<Model, S>::softest_eigenvalues(const Matrix& stiffness, Index co
 }
 
 template <ForceModel Model, Subspace S>
-Training<Model, S> train(const Solid& solid, std::shared_ptr<const FullSystem<Model>> system,
+Training<Model, S> train(const Body& body, std::shared_ptr<const FullSystem<Model>> system,
                          std::shared_ptr<const S> subspace, const ReduceOptions& options, Stages& stage) {
   using Fitting = ForceFitting<Model, S>;
   ReduceReport& report = stage.report();
@@ -89,7 +89,7 @@ Training<Model, S> train(const Solid& solid, std::shared_ptr<const FullSystem<Mo
   report.dropped = subspace->report.dropped;
   report.notes.insert(report.notes.end(), subspace->report.notes.begin(), subspace->report.notes.end());
 
-  const double total_mass = system->nodal_mass().sum(), diagonal = bounding_box(solid.mesh.nodes).diagonal();
+  const double total_mass = system->nodal_mass().sum(), diagonal = bounding_box(node_positions(body)).diagonal();
   Matrix rest_stiffness;
   ReducedModes modes = stage("reduced stiffness", [&](auto) {
     rest_stiffness = project_stiffness(*subspace, *system);
@@ -97,7 +97,7 @@ Training<Model, S> train(const Solid& solid, std::shared_ptr<const FullSystem<Mo
   });
   PoseOptions pose_options = options.poses;
   pose_options.seed += 1000003 * options.seed;  // the seed of a run moves all random choices
-  pose_options.inverted = inverted_rule(solid.law, options.poses.inverted);
+  pose_options.inverted = inverted_rule(law(body), options.poses.inverted);
   const auto sample = [&](const PoseOptions& some) {
     return sample_poses(system->shared_model(), *subspace, modes, total_mass, diagonal, some);
   };
@@ -113,7 +113,7 @@ Training<Model, S> train(const Solid& solid, std::shared_ptr<const FullSystem<Mo
     report.shrunk_poses = poses.shrunk;
     if (poses.inverted > 0)
       report.notes.push_back(std::to_string(poses.inverted) + " of " + std::to_string(poses.Q.cols()) +
-                             " training poses had inverted tets (" +
+                             " training poses had inverted " + std::string(component_name(body)) + " (" +
                              std::to_string(poses.inverted_components) + " in all); " +
                              std::to_string(poses.redrawn) + " draws were redrawn, " +
                              std::to_string(poses.shrunk) + " poses shrunk");
@@ -142,18 +142,16 @@ Training<Model, S> train(const Solid& solid, std::shared_ptr<const FullSystem<Mo
           std::move(modes),  std::move(fitting),  std::move(held_out)};
 }
 
-/// Calls visit(training) with the Training of the solid's law and the subspace that the options name.
+/// Calls visit(training) with the Training of the body's force model and the subspace that the options name.
 template <typename Visitor>
-void with_training(const Solid& solid, const ReduceOptions& options, Stages& stage, Visitor&& visit) {
+void with_training(const Body& body, const ReduceOptions& options, Stages& stage, Visitor&& visit) {
   ReduceReport& report = stage.report();
-  report.nodes = solid.mesh.num_nodes();
-  report.tets = solid.mesh.num_tets();
-  report.fixed_nodes = static_cast<Index>(solid.fixed_nodes.size());
-  with_law(solid.law, [&]<template <typename> class Material>() {
-    using Model = TetElasticity<Material>;
+  report.nodes = num_nodes(body);
+  report.fixed_nodes = static_cast<Index>(fixed_nodes(body).size());
+  with_force_model(body, [&]<typename Model>(const std::shared_ptr<const Model>& model) {
+    report.components = model->num_components();
     const auto system = stage("full system", [&](auto) {
-      return std::make_shared<const FullSystem<Model>>(make_model<Material>(solid), solid.nodal_mass(),
-                                                       solid.fixed_nodes);
+      return std::make_shared<const FullSystem<Model>>(model, nodal_mass(body), fixed_nodes(body));
     });
     const VibrationModes modes = stage("vibration modes", [&](auto) {
       return vibration_modes(*system, {.num_modes = options.modes,
@@ -164,13 +162,13 @@ void with_training(const Solid& solid, const ReduceOptions& options, Stages& sta
     if (options.subspace == "extended") {
       auto subspace = stage("subspace", [&](auto) {
         return std::make_shared<const NodalBasis>(
-            extend_modes(modes, solid.mesh.nodes, system->nodal_mass()));
+            extend_modes(modes, node_positions(body), system->nodal_mass()));
       });
-      visit(train<Model, NodalBasis>(solid, system, std::move(subspace), options, stage));
+      visit(train<Model, NodalBasis>(body, system, std::move(subspace), options, stage));
     } else {
       auto subspace = std::make_shared<const DenseBasis>(
           DenseBasis{modes.vectors, {modes.omega, modes.residuals, modes.num_rigid, 0, modes.notes}});
-      visit(train<Model, DenseBasis>(solid, system, std::move(subspace), options, stage));
+      visit(train<Model, DenseBasis>(body, system, std::move(subspace), options, stage));
     }
   });
 }

@@ -1,6 +1,7 @@
 #include <core/tensor_file.hpp>
 #include <reduction/reduced_model.hpp>
 
+#include <algorithm>
 #include <charconv>
 
 namespace supple {
@@ -14,30 +15,127 @@ std::vector<std::int64_t> widen(const std::vector<Index>& values) {
   return {values.begin(), values.end()};
 }
 
-}  // namespace
+template <std::size_t corners>
+std::vector<std::array<std::int32_t, corners>> narrow(const std::vector<std::array<Index, corners>>& elements) {
+  std::vector<std::array<std::int32_t, corners>> result(elements.size());
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    std::transform(elements[e].begin(), elements[e].end(), result[e].begin(),
+                   [](Index v) { return static_cast<std::int32_t>(v); });
+  return result;
+}
 
-void save_model(const std::filesystem::path& path, const ReducedModel& model) {
-  TensorFileWriter file;
-  const Solid& solid = model.solid;
-  file.metadata = {{"format", format_name}, {"format_version", format_version}, {"material.law", solid.law}};
-  for (const auto& [key, text] : model.provenance) file.metadata["provenance." + key] = text;
+void add_body(TensorFileWriter& file, const Solid& solid) {
   for (const auto& [tag, name] : solid.mesh.region_names)
     file.metadata["region." + std::to_string(tag)] = name;
-
-  file.add("mesh.nodes", solid.mesh.nodes);
-  std::vector<std::array<std::int32_t, 4>> tets;
-  tets.reserve(solid.mesh.tets.size());
-  for (const Tet& tet : solid.mesh.tets)
-    tets.push_back({static_cast<std::int32_t>(tet[0]), static_cast<std::int32_t>(tet[1]),
-                    static_cast<std::int32_t>(tet[2]), static_cast<std::int32_t>(tet[3])});
-  file.add("mesh.tets", tets);
+  file.add("mesh.tets", narrow(solid.mesh.tets));
   if (!solid.mesh.region.empty())
     file.add("mesh.region", std::vector<std::int32_t>(solid.mesh.region.begin(), solid.mesh.region.end()));
   file.add("material.parameters", solid.parameters);
   if (!solid.material_of_tet.empty()) file.add("material.of_tet", solid.material_of_tet);
   file.add("density", solid.density);
-  file.add("fixed_nodes", widen(solid.fixed_nodes));
-  file.add("damping", (Vector(2) << solid.damping.alpha, solid.damping.beta).finished());
+}
+
+void add_body(TensorFileWriter& file, const Shell& shell) {
+  file.add("mesh.triangles", narrow(shell.mesh.triangles));
+  RowMatrix parameters(static_cast<Index>(shell.materials.size()), 3);
+  for (Index k = 0; k < parameters.rows(); ++k) {
+    const ShellMaterial& material = shell.materials[k];
+    parameters.row(k) << material.bending, material.stretch, material.area;
+  }
+  file.add("material.parameters", parameters);
+  file.add("thickness", shell.thickness);
+  file.add("density", shell.density);
+}
+
+/// Reads arrays of a model and says which one is wrong.
+class ModelReader {
+ public:
+  explicit ModelReader(const std::filesystem::path& path) : path_(path), file(path) {}
+
+  InputError fail(const std::string& why) const { return InputError(path_.string() + ": " + why); }
+
+  int whole_number(const std::string& key, const std::string& text) const {
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) throw fail(key + ": '" + text + "' is not a whole number");
+    return value;
+  }
+
+  template <std::size_t corners>
+  std::vector<std::array<Index, corners>> elements(const std::string& name, Index num_nodes) const {
+    const auto nodes = file.values<std::int32_t>(name, {TensorFile::any, corners});
+    if (nodes.empty()) throw fail(name + " is empty");
+    std::vector<std::array<Index, corners>> result(nodes.size() / corners);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (nodes[k] < 0 || nodes[k] >= num_nodes)
+        throw fail(name + " names node " + std::to_string(nodes[k]) + ", expected 0 to " +
+                   std::to_string(num_nodes - 1));
+      result[k / corners][k % corners] = nodes[k];
+    }
+    return result;
+  }
+
+  RowMatrix finite_matrix(const std::string& name, Index rows = TensorFile::any, Index cols = TensorFile::any) const {
+    RowMatrix values = file.matrix(name, rows, cols);
+    if (!values.allFinite()) throw fail(name + " holds a number that is not finite");
+    return values;
+  }
+  Vector finite_vector(const std::string& name, Index size = TensorFile::any) const {
+    Vector values = file.vector(name, size);
+    if (!values.allFinite()) throw fail(name + " holds a number that is not finite");
+    return values;
+  }
+
+ private:
+  std::filesystem::path path_;
+
+ public:
+  const TensorFile file;
+};
+
+Solid read_solid(const ModelReader& in, Points nodes) {
+  Solid solid;
+  solid.mesh.nodes = std::move(nodes);
+  solid.mesh.tets = in.elements<4>("mesh.tets", solid.mesh.num_nodes());
+  const Index m = solid.mesh.num_tets();
+  if (in.file.contains("mesh.region")) {
+    const auto region = in.file.values<std::int32_t>("mesh.region", {m});
+    solid.mesh.region.assign(region.begin(), region.end());
+  }
+  for (const auto& [key, text] : in.file.metadata())
+    if (key.starts_with("region.")) solid.mesh.region_names[in.whole_number(key, key.substr(7))] = text;
+  solid.law = in.file.metadata("material.law");
+  solid.parameters = in.finite_matrix("material.parameters");
+  if (in.file.contains("material.of_tet")) {
+    const auto of_tet = in.file.values<std::int32_t>("material.of_tet", {m});
+    solid.material_of_tet.assign(of_tet.begin(), of_tet.end());
+  }
+  solid.density = in.finite_vector("density");
+  return solid;
+}
+
+Shell read_shell(const ModelReader& in, Points nodes) {
+  Shell shell;
+  shell.mesh.nodes = std::move(nodes);
+  shell.mesh.triangles = in.elements<3>("mesh.triangles", shell.mesh.num_nodes());
+  const RowMatrix parameters = in.finite_matrix("material.parameters", TensorFile::any, 3);
+  for (Index k = 0; k < parameters.rows(); ++k)
+    shell.materials.push_back({parameters(k, 0), parameters(k, 1), parameters(k, 2)});
+  shell.thickness = in.finite_vector("thickness");
+  shell.density = in.finite_vector("density");
+  return shell;
+}
+
+}  // namespace
+
+void save_model(const std::filesystem::path& path, const ReducedModel& model) {
+  TensorFileWriter file;
+  file.metadata = {{"format", format_name}, {"format_version", format_version}, {"material.law", std::string(law(model.body))}};
+  for (const auto& [key, text] : model.provenance) file.metadata["provenance." + key] = text;
+  file.add("mesh.nodes", node_positions(model.body));
+  std::visit([&](const auto& body) { add_body(file, body); }, model.body);
+  file.add("fixed_nodes", widen(fixed_nodes(model.body)));
+  file.add("damping", (Vector(2) << damping(model.body).alpha, damping(model.body).beta).finished());
 
   std::visit(
       [&](const auto& basis) {
@@ -55,65 +153,43 @@ void save_model(const std::filesystem::path& path, const ReducedModel& model) {
 }
 
 ReducedModel load_model(const std::filesystem::path& path) {
-  const TensorFile file(path);
-  const auto fail = [&](const std::string& why) { return InputError(path.string() + ": " + why); };
-  const auto whole_number = [&](const std::string& key, const std::string& text) {
-    int value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) throw fail(key + ": '" + text + "' is not a whole number");
-    return value;
-  };
+  const ModelReader in(path);
+  const TensorFile& file = in.file;
   if (!file.metadata().contains("format") || file.metadata("format") != format_name)
-    throw fail("this is not a reduced model of Supple");
+    throw in.fail("this is not a reduced model of Supple");
   if (file.metadata("format_version") != format_version)
-    throw fail("the model has version " + file.metadata("format_version") + ", expected " + format_version);
+    throw in.fail("the model has version " + file.metadata("format_version") + ", expected " + format_version);
 
   ReducedModel model;
-  Solid& solid = model.solid;
-  const auto nodes = file.matrix("mesh.nodes", TensorFile::any, 3);
-  solid.mesh.nodes = nodes;
+  const Points nodes = in.finite_matrix("mesh.nodes", TensorFile::any, 3);
   const Index n = nodes.rows();
-  const auto tets = file.values<std::int32_t>("mesh.tets", {TensorFile::any, 4});
-  solid.mesh.tets.resize(tets.size() / 4);
-  for (std::size_t k = 0; k < tets.size(); ++k) {
-    if (tets[k] < 0 || tets[k] >= n)
-      throw fail("mesh.tets names node " + std::to_string(tets[k]) + ", expected 0 to " +
-                 std::to_string(n - 1));
-    solid.mesh.tets[k / 4][k % 4] = tets[k];
-  }
-  const Index m = solid.mesh.num_tets();
-  if (m == 0) throw fail("the mesh has no tets");
-  if (file.contains("mesh.region")) {
-    const auto region = file.values<std::int32_t>("mesh.region", {m});
-    solid.mesh.region.assign(region.begin(), region.end());
-  }
-  for (const auto& [key, text] : file.metadata()) {
-    if (key.starts_with("region.")) solid.mesh.region_names[whole_number(key, key.substr(7))] = text;
+  if (file.contains("mesh.triangles"))
+    model.body = read_shell(in, nodes);
+  else
+    model.body = read_solid(in, nodes);
+  for (const auto& [key, text] : file.metadata())
     if (key.starts_with("provenance.")) model.provenance[key.substr(11)] = text;
-  }
-  solid.law = file.metadata("material.law");
-  solid.parameters = file.matrix("material.parameters");
-  if (file.contains("material.of_tet")) {
-    const auto of_tet = file.values<std::int32_t>("material.of_tet", {m});
-    solid.material_of_tet.assign(of_tet.begin(), of_tet.end());
-  }
-  solid.density = file.vector("density");
-  for (const std::int64_t v : file.integers("fixed_nodes")) {
-    if (v < 0 || v >= n)
-      throw fail("fixed_nodes names node " + std::to_string(v) + ", expected 0 to " + std::to_string(n - 1));
-    solid.fixed_nodes.push_back(v);
-  }
-  const auto damping = file.vector("damping", 2);
-  solid.damping = {damping[0], damping[1]};
+  std::visit(
+      [&](auto& body) {
+        for (const std::int64_t v : file.integers("fixed_nodes")) {
+          if (v < 0 || v >= n)
+            throw in.fail("fixed_nodes names node " + std::to_string(v) + ", expected 0 to " + std::to_string(n - 1));
+          body.fixed_nodes.push_back(v);
+        }
+        const Vector damping = in.finite_vector("damping", 2);
+        if ((damping.array() < 0).any()) throw in.fail("damping is negative, expected 0 or more");
+        body.damping = {damping[0], damping[1]};
+      },
+      model.body);
 
   const auto load_basis = [&]<int block>(std::integral_constant<int, block>) {
     auto basis = std::make_shared<KroneckerBasis<block>>();
-    basis->W = file.matrix("subspace.W", 3 * n / block, TensorFile::any);
-    basis->report.omega = file.vector("subspace.omega");
+    basis->W = in.finite_matrix("subspace.W", 3 * n / block);
+    basis->report.omega = in.finite_vector("subspace.omega");
     basis->report.residuals = file.vector("subspace.residuals", basis->report.omega.size());
-    basis->report.rigid_modes = whole_number("subspace.rigid_modes", file.metadata("subspace.rigid_modes"));
+    basis->report.rigid_modes = in.whole_number("subspace.rigid_modes", file.metadata("subspace.rigid_modes"));
     if (basis->report.rigid_modes < 0 || basis->report.rigid_modes > basis->report.omega.size())
-      throw fail("subspace.rigid_modes is " + std::to_string(basis->report.rigid_modes) + ", expected 0 to " +
+      throw in.fail("subspace.rigid_modes is " + std::to_string(basis->report.rigid_modes) + ", expected 0 to " +
                  std::to_string(basis->report.omega.size()));
     model.subspace = std::shared_ptr<const KroneckerBasis<block>>(std::move(basis));
   };
@@ -123,32 +199,26 @@ ReducedModel load_model(const std::filesystem::path& path) {
   else if (block == "1")
     load_basis(std::integral_constant<int, 1>{});
   else
-    throw fail("subspace.block is '" + block + "', expected 1 or 3");
+    throw in.fail("subspace.block is '" + block + "', expected 1 or 3");
 
-  for (const std::int64_t i : file.integers("selection.indices")) {
-    if (i < 0 || i >= m)
-      throw fail("selection.indices names tet " + std::to_string(i) + ", expected 0 to " +
-                 std::to_string(m - 1));
-    if (!model.indices.empty() && i <= model.indices.back())
-      throw fail("selection.indices are not ascending: " + std::to_string(i) + " follows " +
-                 std::to_string(model.indices.back()));
-    model.indices.push_back(i);
-  }
-  model.weights = file.vector("selection.weights", static_cast<Index>(model.indices.size()));
-  model.rest_stiffness = file.matrix("rest_stiffness", model.dim(), model.dim());
-  if (!model.weights.allFinite() || !(model.weights.array() > 0).all())
-    throw fail("selection.weights are not all positive");
-  if (!(damping.array() >= 0).all()) throw fail("damping is negative or not a number, expected 0 or more");
-  if (!nodes.allFinite() || !damping.allFinite() || !solid.parameters.allFinite() || !solid.density.allFinite() ||
-      !std::visit([](const auto& basis) { return basis->report.omega.allFinite(); }, model.subspace) || !model.rest_stiffness.allFinite() ||
-      !std::visit([](const auto& basis) { return basis->W.allFinite(); }, model.subspace))
-    throw fail("it holds numbers that are not finite");
   try {  // what constructing the model demands: law, parameters, volumes
-    with_law(solid.law, [&]<template <typename> class Material>() { (void)make_model<Material>(solid); });
-    (void)solid.nodal_mass();
+    const Index m = with_force_model(model.body, [](const auto& force) { return force->num_components(); });
+    (void)nodal_mass(model.body);
+    for (const std::int64_t i : file.integers("selection.indices")) {
+      if (i < 0 || i >= m)
+        throw in.fail("selection.indices names component " + std::to_string(i) + ", expected 0 to " +
+                      std::to_string(m - 1));
+      if (!model.indices.empty() && i <= model.indices.back())
+        throw in.fail("selection.indices are not ascending: " + std::to_string(i) + " follows " +
+                      std::to_string(model.indices.back()));
+      model.indices.push_back(i);
+    }
   } catch (const std::invalid_argument& error) {
-    throw fail(error.what());
+    throw in.fail(error.what());
   }
+  model.weights = in.finite_vector("selection.weights", static_cast<Index>(model.indices.size()));
+  if (!(model.weights.array() > 0).all()) throw in.fail("selection.weights are not all positive");
+  model.rest_stiffness = in.finite_matrix("rest_stiffness", model.dim(), model.dim());
   return model;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file A reduced model as data: what `reduce` makes, files keep, and simulations load.
 
-#include <physics/solid.hpp>
+#include <physics/body.hpp>
 #include <reduction/reduced_system.hpp>
 
 #include <filesystem>
@@ -12,10 +12,10 @@
 namespace supple {
 
 struct ReducedModel {
-  Solid solid;
+  Body body;
   std::variant<std::shared_ptr<const NodalBasis>, std::shared_ptr<const DenseBasis>> subspace;
-  std::vector<Index> indices;  ///< selected tets, ascending
-  Vector weights;              ///< of the selected tets, > 0
+  std::vector<Index> indices;  ///< selected components (tets, flaps), ascending
+  Vector weights;              ///< of the selected components, > 0
   Matrix rest_stiffness;       ///< UᵀK(0)U, exact, d × d
   /// How it was made: options, seed, version, errors. Free text; the file keeps it.
   std::map<std::string, std::string> provenance;
@@ -31,13 +31,11 @@ struct ReducedModel {
 /// Calls visit(system) with the ReducedSystem of the model; the system lives during the call.
 template <typename Visitor>
 decltype(auto) with_reduced_system(const ReducedModel& model, Visitor&& visit) {
-  return with_law(model.solid.law, [&]<template <typename> class Material>() -> decltype(auto) {
-    using Model = TetElasticity<Material>;
+  return with_force_model(model.body, [&]<typename Model>(const std::shared_ptr<const Model>& force) -> decltype(auto) {
     return std::visit(
         [&]<typename S>(const std::shared_ptr<const S>& subspace) -> decltype(auto) {
-          const ReducedSystem<Model, S> system(
-              std::make_shared<const Model>(make_model<Material>(model.solid)), subspace, model.indices,
-              model.weights, model.rest_stiffness, model.solid.nodal_mass());
+          const ReducedSystem<Model, S> system(force, subspace, model.indices, model.weights, model.rest_stiffness,
+                                               nodal_mass(model.body));
           return visit(system);
         },
         model.subspace);

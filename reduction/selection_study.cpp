@@ -108,14 +108,14 @@ struct SelectionStudy::Model final : Interface {
   std::vector<PulledMotion> references;
 };
 
-SelectionStudy::SelectionStudy(const Solid& solid, const ReduceOptions& options, std::vector<PullScene> scenes,
+SelectionStudy::SelectionStudy(const Body& body, const ReduceOptions& options, std::vector<PullScene> scenes,
                                const Progress& progress) {
   check(options);
   const Stopwatch total;
   ReduceReport report;
   Stages stage(report, progress);
-  const double diagonal = bounding_box(solid.mesh.nodes).diagonal();
-  with_training(solid, options, stage, [&]<typename AnyTraining>(AnyTraining&& training) {
+  const double diagonal = bounding_box(node_positions(body)).diagonal();
+  with_training(body, options, stage, [&]<typename AnyTraining>(AnyTraining&& training) {
     self_ = std::make_unique<Model<AnyTraining>>(std::move(training), diagonal, std::move(scenes), stage);
   });
   report.total_seconds = total.seconds();

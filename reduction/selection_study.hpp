@@ -26,7 +26,7 @@ class SelectionStudy {
  public:
   /// \param scenes  pulls whose trajectories are compared; the reference evaluates all components, which
   /// takes minutes for 10⁵ of them. None by default.
-  SelectionStudy(const Solid& solid, const ReduceOptions& options, std::vector<PullScene> scenes = {},
+  SelectionStudy(const Body& body, const ReduceOptions& options, std::vector<PullScene> scenes = {},
                  const Progress& progress = {});
   ~SelectionStudy();
   SelectionStudy(SelectionStudy&&) noexcept;

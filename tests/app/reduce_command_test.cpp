@@ -134,10 +134,10 @@ TEST_F(ReduceCommandTest, GivesRegionsTheirOwnMaterials) {
   write("materials.json", R"({"regions": {"2": {"young": "1 MPa", "density": 500}}})");
   ASSERT_EQ(supple(job).exit_code, 0);
   const ReducedModel model = load_model(folder / "two.supple");
-  EXPECT_THAT(model.solid.material_of_tet, ElementsAre(0, 1));
-  EXPECT_DOUBLE_EQ(model.solid.parameters(1, 1) / model.solid.parameters(0, 1), 10);
-  EXPECT_DOUBLE_EQ(model.solid.density[0], 1000);
-  EXPECT_DOUBLE_EQ(model.solid.density[1], 500);
+  EXPECT_THAT(std::get<Solid>(model.body).material_of_tet, ElementsAre(0, 1));
+  EXPECT_DOUBLE_EQ(std::get<Solid>(model.body).parameters(1, 1) / std::get<Solid>(model.body).parameters(0, 1), 10);
+  EXPECT_DOUBLE_EQ(std::get<Solid>(model.body).density[0], 1000);
+  EXPECT_DOUBLE_EQ(std::get<Solid>(model.body).density[1], 500);
 
   std::filesystem::remove(folder / "two.supple");
   write("materials.json", R"({"regions": {"3": {"young": "1 MPa"}}})");
@@ -193,6 +193,33 @@ TEST_F(ReduceCommandTest, FitsPosesOfATrajectoryWhateverItsSubspace) {
   EXPECT_LT(fitted["training_error"], 0.2);
   arguments[1] = "bar:8x2x3";
   expect_refusal(arguments, {"run", "another mesh"});
+}
+
+TEST_F(ReduceCommandTest, TakesSurfacesAsShells) {
+  const auto plate = [](Arguments more = {}) {
+    Arguments arguments{"reduce", "plate:12x6", "-o", "plate.supple", "--fix", "x<12%", "--modes", "4",
+                        "--poses", "20",        "--points", "60",      "--held-out", "10"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  const json report = this->report(plate({"--thickness", "2 cm", "--picture", "plate.png", "--plots", "plots"}));
+  EXPECT_GT(report["mesh"]["flaps"], 100);
+  EXPECT_FALSE(report["mesh"].contains("tets"));
+  EXPECT_EQ(report["dimension"], 36);
+  EXPECT_LT(report["training_error"], 0.4);
+  EXPECT_GT(read_png(folder / "plate.png").width, 600);
+  const json info = this->report({"info", "plate.supple"});
+  EXPECT_EQ(info["law"], "discrete-shell");
+  EXPECT_EQ(info["mesh"]["flaps"], report["mesh"]["flaps"]);
+  ASSERT_EQ(supple({"simulate", "plate.supple", "-o", "run"}).exit_code, 0);
+  EXPECT_GT(read_png(folder / "run/picture.png").width, 600);
+  // a share of the diagonal is the default
+  const double mass = this->report(plate({"--thickness", "1%"}))["mesh"]["mass"];
+  EXPECT_DOUBLE_EQ(this->report(plate())["mesh"]["mass"], mass);
+  expect_refusal(plate({"--material", "mooney-rivlin"}), {"discrete shell"});
+  expect_refusal(plate({"--thickness", "-1"}), {"thickness"});
+  expect_refusal(plate({"--fix-region", "7"}), {"no regions"});
+  expect_refusal(small({"--thickness", "1%"}), {"--thickness", "tets"});
 }
 
 TEST_F(ReduceCommandTest, KeepsNoPosesOfInfiniteEnergy) {

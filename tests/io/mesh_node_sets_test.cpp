@@ -38,7 +38,7 @@ std::string refusal(const Select& select) {
 TEST(SelectNodes, TakesOneSideOfAPlane) {
   const TetMesh mesh = bar();
   const auto expect = [&](const char* rule, const auto& holds) {
-    EXPECT_EQ(select_nodes(mesh, rule), nodes_where(mesh, holds)) << rule;
+    EXPECT_EQ(select_nodes(mesh.nodes, rule), nodes_where(mesh, holds)) << rule;
   };
   expect("x<0.5", [](const Point& p) { return p[0] < 0.5; });
   expect("x<=0.5", [](const Point& p) { return p[0] <= 0.5; });
@@ -52,32 +52,32 @@ TEST(SelectNodes, TakesOneSideOfAPlane) {
 
 TEST(SelectNodes, CountsSharesFromTheLowerEndWhereverTheMeshLies) {
   TetMesh mesh = bar();
-  const std::vector<Index> expected = select_nodes(mesh, "x<=25%");
+  const std::vector<Index> expected = select_nodes(mesh.nodes, "x<=25%");
   mesh.nodes.col(0).array() -= 1000;
   mesh.nodes *= 1e-3;
-  EXPECT_EQ(select_nodes(mesh, "x<=25.001%"), expected);
+  EXPECT_EQ(select_nodes(mesh.nodes, "x<=25.001%"), expected);
 }
 
 TEST(SelectNodes, RefusesOtherRulesAndEmptySets) {
   const TetMesh mesh = bar();
   for (const char* rule :
        {"", "y", "y<", "w<1", "y=1", "y<<1", "<1", "y<1%%", "y<a", "y<1 2", "y<nan", "xy<1", "y<1%x"})
-    EXPECT_THAT(refusal([&] { select_nodes(mesh, rule); }),
+    EXPECT_THAT(refusal([&] { select_nodes(mesh.nodes, rule); }),
                 HasSubstr("\"" + std::string(rule) + "\": expected an axis"));
-  EXPECT_THAT(refusal([&] { select_nodes(mesh, "x<0%"); }), HasSubstr("\"x<0%\": selects no node"));
+  EXPECT_THAT(refusal([&] { select_nodes(mesh.nodes, "x<0%"); }), HasSubstr("\"x<0%\": selects no node"));
 }
 
 TEST(NodesInBox, AreThoseInTheClosedBox) {
   const TetMesh mesh = bar();
-  EXPECT_EQ(nodes_in_box(mesh, "0.25,0,0:0.5,0.1,0.25"),
+  EXPECT_EQ(nodes_in_box(mesh.nodes, "0.25,0,0:0.5,0.1,0.25"),
             nodes_where(mesh, [](const Point& p) { return p[0] >= 0.25 && p[0] <= 0.5 && p[1] == 0; }));
-  EXPECT_EQ(nodes_in_box(mesh, "-1, -1, -1 : 2, 2, 2").size(), 20u);
+  EXPECT_EQ(nodes_in_box(mesh.nodes, "-1, -1, -1 : 2, 2, 2").size(), 20u);
   for (const char* box :
        {"", "0,0,0", "0,0,0:1,1", "0,0,0:1,1,1,1", "0,0,0,1,1,1", "0,0,a:1,1,1", "0:0:0:1:1:1"})
-    EXPECT_THAT(refusal([&] { nodes_in_box(mesh, box); }),
+    EXPECT_THAT(refusal([&] { nodes_in_box(mesh.nodes, box); }),
                 HasSubstr("expected xmin,ymin,zmin:xmax,ymax,zmax"));
-  EXPECT_THAT(refusal([&] { nodes_in_box(mesh, "1,0,0:0,1,1"); }), HasSubstr("above its upper bound"));
-  EXPECT_THAT(refusal([&] { nodes_in_box(mesh, "5,5,5:6,6,6"); }), HasSubstr("selects no node"));
+  EXPECT_THAT(refusal([&] { nodes_in_box(mesh.nodes, "1,0,0:0,1,1"); }), HasSubstr("above its upper bound"));
+  EXPECT_THAT(refusal([&] { nodes_in_box(mesh.nodes, "5,5,5:6,6,6"); }), HasSubstr("selects no node"));
 }
 
 TEST(NodesOfRegion, AreThoseOfItsTetsByNameOrNumber) {
@@ -95,7 +95,7 @@ TEST(NodesOfRegion, AreThoseOfItsTetsByNameOrNumber) {
 TEST(ReadNodeSet, TakesOneIndexALine) {
   const TetMesh mesh = bar();
   const auto read = [&](const std::string& text) {
-    return read_node_set(mesh, write(text, test_folder() / "nodes.txt"));
+    return read_node_set(mesh.nodes, write(text, test_folder() / "nodes.txt"));
   };
   EXPECT_THAT(read("# fixed\n5\r\n0   # the corner\n\n19\n5\n"), ElementsAre(0, 5, 19));
   EXPECT_THAT(refusal([&] { read("1\n2\n20\n"); }),
@@ -103,7 +103,7 @@ TEST(ReadNodeSet, TakesOneIndexALine) {
   EXPECT_THAT(refusal([&] { read("1\n-1\n"); }), HasSubstr(":2: node -1 does not exist"));
   EXPECT_THAT(refusal([&] { read("1\n2.5\n"); }), HasSubstr(":2: expected a node index, found \"2.5\""));
   EXPECT_THAT(refusal([&] { read("# nothing\n"); }), HasSubstr("names no node"));
-  EXPECT_THROW(read_node_set(mesh, "/absent/nodes.txt"), InputError);
+  EXPECT_THROW(read_node_set(mesh.nodes, "/absent/nodes.txt"), InputError);
 }
 
 }  // namespace

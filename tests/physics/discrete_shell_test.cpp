@@ -1,4 +1,5 @@
 #include <physics/discrete_shell.hpp>
+#include <physics/equilibrium.hpp>
 #include <physics/full_system.hpp>
 #include <physics/mass.hpp>
 #include <physics/newton.hpp>
@@ -6,7 +7,6 @@
 #include <tests/support/meshes.hpp>
 #include <tests/support/near.hpp>
 #include <tests/support/random_vectors.hpp>
-#include <tests/support/static_problem.hpp>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -336,7 +336,7 @@ double relative_tip_deflection(const TriangleMesh& mesh, double edge, double cla
                                          lumped_mass(mesh, 1000.0, h), fixed);
   Loads loads;
   for (const Index v : tip) loads.forces.push_back({v, {0, 0, P / static_cast<double>(tip.size())}});
-  StaticProblem problem(system, system.project(loads).force);
+  Equilibrium problem(system, system.project(loads));
   SpdSolver<SparseMatrix> solver;
   Vector u = Vector::Zero(system.dim());
   const Report report = newton_minimize(problem, solver, u, {.tolerance = 1e-5});

@@ -45,13 +45,13 @@ void expect_sound(const ReducedModel& model, const ReduceReport& report, const R
   EXPECT_EQ(report.points, static_cast<Index>(model.indices.size()));
   EXPECT_EQ(model.weights.size(), report.points);
   EXPECT_GT(model.weights.minCoeff(), 0);
-  EXPECT_THAT(model.indices, testing::Each(testing::AllOf(testing::Ge(0), testing::Lt(report.tets))));
+  EXPECT_THAT(model.indices, testing::Each(testing::AllOf(testing::Ge(0), testing::Lt(report.components))));
   EXPECT_TRUE(std::adjacent_find(model.indices.begin(), model.indices.end(), std::greater_equal<>()) ==
               model.indices.end())
       << "ascending, each once";
   EXPECT_EQ(report.dimension, model.dim());
-  EXPECT_EQ(report.nodes, model.solid.mesh.num_nodes());
-  EXPECT_EQ(report.tets, model.solid.mesh.num_tets());
+  EXPECT_EQ(report.nodes, std::get<Solid>(model.body).mesh.num_nodes());
+  EXPECT_EQ(report.components, std::get<Solid>(model.body).mesh.num_tets());
   EXPECT_EQ(report.omega.size(), options.modes);
   EXPECT_TRUE(model.rest_stiffness.rows() == model.dim() && model.rest_stiffness.allFinite());
   EXPECT_GE(report.training_error, 0);
@@ -285,17 +285,17 @@ TEST_F(ModelFile, GivesBackTheSameBits) {
     save_model(path, model);
     const ReducedModel loaded = load_model(path);
 
-    EXPECT_TRUE(is_same(loaded.solid.mesh.nodes, solid.mesh.nodes));
-    EXPECT_EQ(loaded.solid.mesh.tets, solid.mesh.tets);
-    EXPECT_EQ(loaded.solid.mesh.region, solid.mesh.region);
-    EXPECT_EQ(loaded.solid.mesh.region_names, solid.mesh.region_names);
-    EXPECT_EQ(loaded.solid.law, solid.law);
-    EXPECT_TRUE(is_same(loaded.solid.parameters, solid.parameters));
-    EXPECT_EQ(loaded.solid.material_of_tet, solid.material_of_tet);
-    EXPECT_TRUE(is_same(loaded.solid.density, solid.density));
-    EXPECT_EQ(loaded.solid.fixed_nodes, solid.fixed_nodes);
-    EXPECT_EQ(loaded.solid.damping.alpha, 0.1);
-    EXPECT_EQ(loaded.solid.damping.beta, 1e-3);
+    EXPECT_TRUE(is_same(std::get<Solid>(loaded.body).mesh.nodes, solid.mesh.nodes));
+    EXPECT_EQ(std::get<Solid>(loaded.body).mesh.tets, solid.mesh.tets);
+    EXPECT_EQ(std::get<Solid>(loaded.body).mesh.region, solid.mesh.region);
+    EXPECT_EQ(std::get<Solid>(loaded.body).mesh.region_names, solid.mesh.region_names);
+    EXPECT_EQ(std::get<Solid>(loaded.body).law, solid.law);
+    EXPECT_TRUE(is_same(std::get<Solid>(loaded.body).parameters, solid.parameters));
+    EXPECT_EQ(std::get<Solid>(loaded.body).material_of_tet, solid.material_of_tet);
+    EXPECT_TRUE(is_same(std::get<Solid>(loaded.body).density, solid.density));
+    EXPECT_EQ(std::get<Solid>(loaded.body).fixed_nodes, solid.fixed_nodes);
+    EXPECT_EQ(std::get<Solid>(loaded.body).damping.alpha, 0.1);
+    EXPECT_EQ(std::get<Solid>(loaded.body).damping.beta, 1e-3);
     EXPECT_EQ(loaded.subspace.index(), model.subspace.index());
     EXPECT_TRUE(is_same(fields(loaded), fields(model)));
     EXPECT_TRUE(is_same(loaded.omega(), model.omega()));
@@ -344,18 +344,45 @@ TEST_F(ModelFile, IsRefusedIfAnythingIsWrongWithIt) {
     save_model(path, other);
     return message(path);
   };
-  EXPECT_THAT(changed([](auto& m) { m.indices.back() = 144; }), testing::HasSubstr("names tet 144"));
+  EXPECT_THAT(changed([](auto& m) { m.indices.back() = 144; }), testing::HasSubstr("names component 144"));
   EXPECT_THAT(changed([](auto& m) { m.indices.pop_back(); }), testing::HasSubstr("selection.weights"));
   EXPECT_THAT(changed([](auto& m) { m.indices[1] = m.indices[0]; }), testing::HasSubstr("not ascending"));
   EXPECT_THAT(changed([](auto& m) { m.weights[0] = -1; }), testing::HasSubstr("not all positive"));
-  EXPECT_THAT(changed([](auto& m) { m.weights[0] = std::nan(""); }), testing::HasSubstr("not all positive"));
-  EXPECT_THAT(changed([](auto& m) { m.solid.mesh.tets[3][1] = -2; }), testing::HasSubstr("names node -2"));
-  EXPECT_THAT(changed([](auto& m) { m.solid.fixed_nodes = {63}; }), testing::HasSubstr("names node 63"));
-  EXPECT_THAT(changed([](auto& m) { m.solid.law = "jelly"; }), testing::HasSubstr("jelly"));
-  EXPECT_THAT(changed([](auto& m) { m.solid.density = Vector::Ones(5); }), testing::HasSubstr("bar.supple"));
+  EXPECT_THAT(changed([](auto& m) { m.weights[0] = std::nan(""); }), testing::HasSubstr("not finite"));
+  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).mesh.tets[3][1] = -2; }), testing::HasSubstr("names node -2"));
+  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).fixed_nodes = {63}; }), testing::HasSubstr("names node 63"));
+  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).law = "jelly"; }), testing::HasSubstr("jelly"));
+  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).density = Vector::Ones(5); }), testing::HasSubstr("bar.supple"));
   EXPECT_THAT(changed([](auto& m) { m.rest_stiffness.setZero(8, 9); }), testing::HasSubstr("rest_stiffness"));
-  EXPECT_THAT(changed([](auto& m) { std::swap(m.solid.mesh.tets[0][0], m.solid.mesh.tets[0][1]); }),
+  EXPECT_THAT(changed([](auto& m) { std::swap(std::get<Solid>(m.body).mesh.tets[0][0], std::get<Solid>(m.body).mesh.tets[0][1]); }),
               testing::HasSubstr("volume"));
+}
+
+TEST(Reduce, ReducesAShellAndKeepsIt) {
+  const TriangleMesh mesh = equilateral_grid(8, 4, 0.1);
+  Shell shell = isotropic_shell(mesh, {.young = 1e6, .poisson = 0.4}, 0.02, {0, 1, 2, 3, 4}, 700);
+  shell.damping = {0.1, 1e-3};
+  ReduceOptions options = quick(60);
+  ReduceReport report;
+  const ReducedModel model = reduce(shell, options, &report);
+  EXPECT_EQ(report.components, static_cast<Index>(interior_edges(mesh).size()));
+  EXPECT_LT(report.training_error, 0.3);
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "supple_shell.supple";
+  save_model(path, model);
+  const ReducedModel loaded = load_model(path);
+  const Shell& kept = std::get<Shell>(loaded.body);
+  EXPECT_EQ(kept.mesh.triangles, mesh.triangles);
+  EXPECT_TRUE(is_same(kept.mesh.nodes, mesh.nodes));
+  EXPECT_EQ(kept.materials[0].bending, shell.materials[0].bending);
+  EXPECT_EQ(kept.materials[0].stretch, shell.materials[0].stretch);
+  EXPECT_EQ(kept.materials[0].area, shell.materials[0].area);
+  EXPECT_EQ(kept.thickness, shell.thickness);
+  EXPECT_EQ(kept.fixed_nodes, shell.fixed_nodes);
+  const Vector q = random_vector(model.dim(), 1e-2, 3);
+  const auto force = [&](const ReducedModel& some) {
+    return with_reduced_system(some, [&](const auto& system) { return system.force(q); });
+  };
+  EXPECT_TRUE(is_same(force(loaded), force(model)));
 }
 
 TEST(Reduce, TakesAsFewComponentsAsATargetErrorNeeds) {

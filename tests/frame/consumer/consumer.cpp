@@ -11,7 +11,7 @@ using namespace supple;
 
 int main() {
   const TetMesh mesh = builtin_mesh("bar:8x2x2");
-  const Solid solid = isotropic_solid(mesh, {.young = 1e5, .poisson = 0.4}, select_nodes(mesh, "x<1%"));
+  const Solid solid = isotropic_solid(mesh, {.young = 1e5, .poisson = 0.4}, select_nodes(mesh.nodes, "x<1%"));
 
   ReduceReport report;
   ReduceOptions options{.modes = 4, .points = 30};

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <core/types.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace supple {
+
+/// `supple edit`: the shapes that an object takes as handles on it move.
+struct EditCommand {
+  std::filesystem::path model, scene;
+  bool full = false;  ///< the unreduced system
+  std::optional<std::string> solver;
+  std::optional<double> tolerance;
+  std::string frames = "surface";  ///< surface, tets or none
+  std::filesystem::path output;    ///< folder; empty: only the report
+  std::filesystem::path json;
+  int threads = 0;
+
+  void run() const;
+};
+
+}  // namespace supple

@@ -1,0 +1,100 @@
+#include <app/exit_guard.hpp>
+#include <app/frames.hpp>
+#include <app/surface.hpp>
+#include <core/stopwatch.hpp>
+#include <io/vtu_writer.hpp>
+
+#include <cstdio>
+#include <optional>
+
+namespace supple {
+
+namespace {
+
+/// The start, the frame of the largest displacement, and the one after it that is farthest from that.
+std::vector<Index> telling_frames(const std::vector<Points>& surface_displacement) {
+  Index largest = 0, farthest = -1;
+  double most = 0, distance = 0;
+  const Index count = static_cast<Index>(surface_displacement.size());
+  for (Index f = 0; f < count; ++f)
+    if (const double norm = surface_displacement[f].norm(); norm > most) {
+      most = norm;
+      largest = f;
+    }
+  for (Index f = largest + 1; f < count; ++f)
+    if (const double norm = (surface_displacement[f] - surface_displacement[largest]).norm();
+        norm > distance) {
+      distance = norm;
+      farthest = f;
+    }
+  std::vector<Index> frames{0};
+  if (largest > 0) frames.push_back(largest);
+  if (farthest > 0) frames.push_back(farthest);
+  return frames;
+}
+
+void draw_frames(const std::filesystem::path& path, const Points& rest,
+                 const std::vector<Triangle>& triangles, const std::vector<Points>& displacement,
+                 const std::vector<double>& times) {
+  std::vector<PictureObject> objects;
+  for (const Index f : telling_frames(displacement)) {
+    PictureObject object{.positions = rest + displacement[f], .triangles = triangles};
+    object.scalar = displacement[f].rowwise().norm();
+    char time[32];
+    std::snprintf(time, sizeof time, "t = %.3f s", times[f]);
+    object.caption = time;
+    objects.push_back(std::move(object));
+  }
+  PictureOptions options;
+  options.width = 1600;
+  options.height = 800;
+  options.scale.label = "displacement [m]";
+  options.scale.low = 0.0;
+  options.scale.high = scale_end(objects);
+  write_picture(path, objects, options);
+}
+
+}  // namespace
+
+double write_frames(const std::filesystem::path& folder, const std::string& frames, const ReducedModel& model,
+                    const Trajectory& trajectory, const Progress& progress) {
+  const Points& nodes = node_positions(model.body);
+  const Surface surface(model.body);
+  const Points rest = surface.rows(nodes);
+  const std::filesystem::path list = folder / "series.pvd";
+  std::optional<VtuSeries> series;
+  if (frames != "none") {
+    const ExitGuard guard;
+    if (std::filesystem::exists(list))  // an earlier run may have left more frames than this one has
+      for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().extension() == ".vtu" && entry.path().filename().string().starts_with("series_"))
+          std::filesystem::remove(entry.path());
+    series.emplace(list);
+  }
+  std::vector<Points> surface_displacement;
+  double seconds = 0;
+  for (Index f = 0; f < trajectory.num_frames(); ++f) {
+    const Stopwatch watch;
+    const Vector u = frame_displacement(trajectory, model, f);
+    seconds += watch.seconds();
+    surface_displacement.push_back(surface.rows(as_points(u)));
+    if (series) {
+      const Vector v = frame_velocity(trajectory, model, f);
+      const ExitGuard guard;
+      if (const Solid* solid = std::get_if<Solid>(&model.body); solid && frames == "tets")
+        series->add(trajectory.time[f], nodes + as_points(u), solid->mesh.tets,
+                    {.point_data = {vector_field("displacement [m]", u), vector_field("velocity [m/s]", v)}});
+      else
+        series->add(trajectory.time[f], rest + surface_displacement.back(), surface.triangles,
+                    {.point_data = {{"displacement [m]", surface_displacement.back()},
+                                    {"velocity [m/s]", surface.rows(as_points(v))}}});
+    }
+    tell(progress, "frames", static_cast<double>(f + 1) / static_cast<double>(trajectory.num_frames()));
+  }
+  tell(progress, "picture", 0);
+  draw_frames(folder / "picture.png", rest, surface.triangles, surface_displacement,
+              {trajectory.time.begin(), trajectory.time.end()});
+  return seconds;
+}
+
+}  // namespace supple
