@@ -6,3 +6,5 @@ supple_test(force_fitting LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/force_fit
 supple_test(reduced_system LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/reduced_system_test.cpp LINKS supple::reduction)
 supple_test(reduce LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/reduce_test.cpp LINKS supple::reduction)
 supple_test(selection_study LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/selection_study_test.cpp LINKS supple::reduction)
+supple_test(modal_derivatives LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/modal_derivatives_test.cpp LINKS supple::reduction)
+supple_test(bases LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/bases_test.cpp LINKS supple::reduction)
