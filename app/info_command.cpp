@@ -127,7 +127,6 @@ Json model_json(const ReducedModel& model, Rows& rows) {
   const RayleighDamping& damping = supple::damping(model.body);
   const std::size_t fixed = fixed_nodes(model.body).size();
   const Vector hertz = model.omega() / (2 * std::numbers::pi);
-  const bool nodal = model.subspace.index() == 0;
   std::string parameters;
   for (Index k = 0; k < std::min<Index>(materials.rows(), 4); ++k)
     parameters += (k > 0 ? "; " : " ") + joined(materials.row(k), 3);
@@ -139,12 +138,12 @@ Json model_json(const ReducedModel& model, Rows& rows) {
        {"mass", shown(mass) + " kg"},
        {"fixed nodes", shown_count(static_cast<long long>(fixed))},
        {"damping", "alpha " + shown(damping.alpha) + " 1/s, beta " + shown(damping.beta) + " s"},
-       {"subspace", "dimension " + std::to_string(model.dim()) + (nodal ? ", extended modal" : ", modal")},
+       {"subspace", "dimension " + std::to_string(model.dim()) + ", " + model.subspace_name},
        {"modes", joined(hertz, 8) + " Hz"},
        {"points", std::to_string(model.indices.size())}});
   Json json{{"dimension", model.dim()},
             {"points", model.indices.size()},
-            {"subspace", nodal ? "extended" : "modal"},
+            {"subspace", model.subspace_name},
             {"law", law(model.body)},
             {"materials", Json::array()},
             {"mass", mass},

@@ -1,4 +1,5 @@
 #include <app/edit_command.hpp>
+#include <app/fidelity_command.hpp>
 #include <app/compare_command.hpp>
 #include <app/compare_selectors_command.hpp>
 #include <app/exit_guard.hpp>
@@ -12,6 +13,7 @@
 #include <io/builtin_surfaces.hpp>
 #include <io/json_fields.hpp>
 #include <physics/solid.hpp>
+#include <reduction/named_subspace.hpp>
 #include <sparse/selector_library.hpp>
 
 #include <CLI/CLI.hpp>
@@ -79,9 +81,18 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
       ->check(CLI::IsMember({"default", "paper"}))
       ->group(method);
   command
-      .add_option("--subspace", c.subspace, "extended (modes under all linear maps) or modal (modes alone)")
+      .add_option("--subspace", c.subspace, "extended (modes under all linear maps), modal (modes alone), derivatives (modal derivatives), skinning "
+                  "(skinning eigenmodes), pca (of --snapshots)")
       ->capture_default_str()
-      ->check(CLI::IsMember({"extended", "modal"}))
+      ->check(CLI::IsMember(known_subspaces()))
+      ->group(method);
+  command.add_option("--dimension", c.dimension, "Of the subspace, where the modes leave a choice")
+      ->type_name("D")
+      ->check(CLI::PositiveNumber)
+      ->group(method);
+  command
+      .add_option("--snapshots", c.snapshots, "Displacements for --subspace pca: .npy, tensor file or trajectory")
+      ->type_name("FILE")
       ->group(method);
   command.add_option("--modes", c.modes, "Vibration modes, rigid ones included [15]")
       ->type_name("R")
@@ -332,6 +343,23 @@ CLI::App& add_edit(CLI::App& app, EditCommand& c) {
   return edit;
 }
 
+CLI::App& add_fidelity(CLI::App& app, FidelityCommand& c) {
+  CLI::App& fidelity = *app.add_subcommand("fidelity", "Compare subspaces by the shapes that they let an object take");
+  add_problem(fidelity, c);
+  fidelity.add_option("--scene", c.scene, "Handles and their motions, see docs/edit-scene.md")
+      ->required()
+      ->type_name("FILE.json");
+  fidelity.add_option("--subspaces", c.subspaces, "Names, separated by commas; all of the extended one's dimension")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->check(CLI::IsMember(known_subspaces()));
+  fidelity.add_option("-o,--output", c.output, "Folder for table.md, shapes.png and the report")->type_name("DIR");
+  add_json(fidelity, c.json);
+  add_threads(fidelity, c.threads);
+  fidelity.footer("Example:\nsupple fidelity cactus.off --scene bend.json -o fidelity");
+  return fidelity;
+}
+
 CLI::App& add_info(CLI::App& app, InfoCommand& c) {
   CLI::App& info = *app.add_subcommand("info", "Say what a model or a mesh holds");
   info.add_option("SOURCE", c.source, "Model, mesh file or built-in mesh")->required();
@@ -394,6 +422,7 @@ int run(int argc, char** argv) {
   ReduceCommand reduce;
   SimulateCommand simulate;
   EditCommand edit;
+  FidelityCommand fidelity;
   CompareCommand compare;
   CompareSelectorsCommand compare_selectors;
   SelectCommand select;
@@ -402,6 +431,7 @@ int run(int argc, char** argv) {
   add_reduce(app, reduce).callback([&] { reduce.run(); });
   add_simulate(app, simulate).callback([&] { simulate.run(); });
   add_edit(app, edit).callback([&] { edit.run(); });
+  add_fidelity(app, fidelity).callback([&] { fidelity.run(); });
   add_compare(app, compare).callback([&] { compare.run(); });
   add_compare_selectors(app, compare_selectors).callback([&] { compare_selectors.run(); });
   add_select(app, select).callback([&] { select.run(); });

@@ -129,6 +129,10 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
 ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named) {
   ReduceOptions options = problem.recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
   options.subspace = problem.subspace;
+  if (problem.dimension) options.dimension = *problem.dimension;
+  if (problem.snapshots) options.snapshots = read_poses(*problem.snapshots, named.nodes());
+  if (options.subspace == "pca" && !problem.snapshots) throw InputError("--subspace pca needs --snapshots");
+  if (options.subspace != "pca" && problem.snapshots) throw InputError("--snapshots are for --subspace pca");
   options.seed = problem.seed;
   if (problem.modes) options.modes = *problem.modes;
   if (problem.poses) options.poses.count = *problem.poses;
@@ -146,6 +150,7 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options) {
   Json json{{"recipe", problem.recipe},
             {"subspace", options.subspace},
             {"modes", options.modes},
+            {"dimension", options.dimension},
             {"poses", options.poses.count},
             {"norm", to_text(options.norm)},
             {"omega_exponent", options.poses.omega_exponent},
@@ -168,6 +173,7 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options) {
   add_files("fix_file", problem.fix_file);
   if (problem.thickness) json["thickness"] = *problem.thickness;
   if (problem.materials) json["materials"] = problem.materials->string();
+  if (problem.snapshots) json["snapshots"] = problem.snapshots->string();
   if (problem.poses_file) json["poses_file"] = problem.poses_file->string();
   return json;
 }

@@ -49,8 +49,7 @@ void check(const ReduceOptions& options) {
           "number of points is " + std::to_string(options.points) + ", expected at least 1");
   require(options.target_error >= 0, "target error is negative, expected 0 or more");
   require(options.held_out_poses >= 0, "number of held-out poses is negative, expected 0 or more");
-  require(options.subspace == "extended" || options.subspace == "modal",
-          "subspace '" + options.subspace + "' is not known, expected extended or modal");
+  check(options.subspace_choice());
   const auto& selectors = known_selectors();
   require(std::find(selectors.begin(), selectors.end(), options.selector) != selectors.end(),
           "selector '" + options.selector + "' is not known, see known_selectors()");
@@ -83,6 +82,7 @@ ReducedModel reduce(const Body& body, const ReduceOptions& options, ReduceReport
   Stages stage(report, progress);
   ReducedModel model;
   model.body = body;
+  model.subspace_name = options.subspace;
   with_training(body, options, stage, [&](const auto& training) {
     Selection selection = stage("selection", [&](auto) { return select(training, options, progress); });
     model.subspace = training.subspace;

@@ -3,6 +3,7 @@
 
 #include <core/progress.hpp>
 #include <reduction/force_fitting.hpp>
+#include <reduction/named_subspace.hpp>
 #include <reduction/reduced_model.hpp>
 #include <reduction/training_poses.hpp>
 #include <sparse/selection.hpp>
@@ -16,8 +17,10 @@
 namespace supple {
 
 struct ReduceOptions {
-  std::string subspace = "extended";  ///< "extended" (W ⊗ I₃, Alg. 2) or "modal" (the linear modes alone)
+  std::string subspace = "extended";  ///< one of known_subspaces(), see SubspaceChoice
   Index modes = 15;                   ///< r, rigid ones included
+  Index dimension = 0;                ///< d to aim at, where the modes leave a choice
+  Matrix snapshots = {};              ///< 3n × T displacements, for the subspace "pca"
   PoseOptions poses = {};             ///< training poses
   ForceNorm norm = ForceNorm::Stiffness;
   Matrix given_poses = {};  ///< d × T, instead of random ones; or 3n × T displacements, projected to the subspace
@@ -26,6 +29,10 @@ struct ReduceOptions {
   double target_error = 0;         ///< if positive: as few components as reach this training error
   Index held_out_poses = 100;      ///< random ones at each of three amplitudes; 0: measure nothing held out
   std::uint64_t seed = 1;
+
+  SubspaceChoice subspace_choice() const {
+    return {.name = subspace, .modes = modes, .dimension = dimension, .snapshots = snapshots, .seed = seed};
+  }
 
   /// The paper's: 1000 poses with deviations ∝ 1/ω̄, errors in the M-orthonormal basis, NN-HTP. The amplitude,
   /// which the paper leaves open, is the one at which its error for the dragon comes out (7 % of the

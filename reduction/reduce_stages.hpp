@@ -3,7 +3,6 @@
 
 #include <core/stopwatch.hpp>
 #include <physics/full_system.hpp>
-#include <reduction/modal_basis.hpp>
 #include <reduction/reduce.hpp>
 
 #include <algorithm>
@@ -153,23 +152,10 @@ void with_training(const Body& body, const ReduceOptions& options, Stages& stage
     const auto system = stage("full system", [&](auto) {
       return std::make_shared<const FullSystem<Model>>(model, nodal_mass(body), fixed_nodes(body));
     });
-    const VibrationModes modes = stage("vibration modes", [&](auto) {
-      return vibration_modes(*system, {.num_modes = options.modes,
-                                       .tolerance = 1e-8,
-                                       .seed = options.seed,
-                                       .progress = stage.progress()});
-    });
-    if (options.subspace == "extended") {
-      auto subspace = stage("subspace", [&](auto) {
-        return std::make_shared<const NodalBasis>(
-            extend_modes(modes, node_positions(body), system->nodal_mass()));
-      });
-      visit(train<Model, NodalBasis>(body, system, std::move(subspace), options, stage));
-    } else {
-      auto subspace = std::make_shared<const DenseBasis>(
-          DenseBasis{modes.vectors, {modes.omega, modes.residuals, modes.num_rigid, 0, modes.notes}});
-      visit(train<Model, DenseBasis>(body, system, std::move(subspace), options, stage));
-    }
+    with_subspace(*system, options.subspace_choice(), stage.progress(), stage,
+                  [&]<typename S>(std::shared_ptr<const S> subspace) {
+                    visit(train<Model, S>(body, system, std::move(subspace), options, stage));
+                  });
   });
 }
 

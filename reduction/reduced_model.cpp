@@ -130,7 +130,7 @@ Shell read_shell(const ModelReader& in, Points nodes) {
 
 void save_model(const std::filesystem::path& path, const ReducedModel& model) {
   TensorFileWriter file;
-  file.metadata = {{"format", format_name}, {"format_version", format_version}, {"material.law", std::string(law(model.body))}};
+  file.metadata = {{"format", format_name}, {"format_version", format_version}, {"material.law", std::string(law(model.body))}, {"subspace.name", model.subspace_name}};
   for (const auto& [key, text] : model.provenance) file.metadata["provenance." + key] = text;
   file.add("mesh.nodes", node_positions(model.body));
   std::visit([&](const auto& body) { add_body(file, body); }, model.body);
@@ -193,6 +193,7 @@ ReducedModel load_model(const std::filesystem::path& path) {
                  std::to_string(basis->report.omega.size()));
     model.subspace = std::shared_ptr<const KroneckerBasis<block>>(std::move(basis));
   };
+  model.subspace_name = file.metadata("subspace.name");
   const std::string& block = file.metadata("subspace.block");
   if (block == "3")
     load_basis(std::integral_constant<int, 3>{});

@@ -14,6 +14,7 @@ namespace supple {
 struct ReducedModel {
   Body body;
   std::variant<std::shared_ptr<const NodalBasis>, std::shared_ptr<const DenseBasis>> subspace;
+  std::string subspace_name = "extended";  ///< see SubspaceChoice
   std::vector<Index> indices;  ///< selected components (tets, flaps), ascending
   Vector weights;              ///< of the selected components, > 0
   Matrix rest_stiffness;       ///< UᵀK(0)U, exact, d × d

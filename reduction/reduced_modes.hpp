@@ -10,7 +10,12 @@ namespace supple {
 
 /// UᵀKU, d × d, for K over the free unknowns of `system`. \note O(d · nonzeros(K))
 template <Subspace S, typename System>
-Matrix project_stiffness(const S& subspace, const System& system);
+Matrix project_stiffness(const S& subspace, const System& system, const SparseMatrix& K);
+/// The same for the stiffness at rest.
+template <Subspace S, typename System>
+Matrix project_stiffness(const S& subspace, const System& system) {
+  return project_stiffness(subspace, system, system.rest_stiffness());
+}
 
 /// K̄ φ̄ = ω̄² φ̄ for the reduced stiffness K̄ (the reduced mass is I).
 struct ReducedModes {
@@ -28,10 +33,9 @@ ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index>
 // ---------------------------------------------------------------------------------------------------------------------
 
 template <Subspace S, typename System>
-Matrix project_stiffness(const S& subspace, const System& system) {
+Matrix project_stiffness(const S& subspace, const System& system, const SparseMatrix& K) {
   constexpr int block = S::block;
   require_size("subspace.full_dim()", subspace.full_dim(), system.num_nodes() * System::node_dim);
-  const SparseMatrix& K = system.rest_stiffness();
   const NodeNumbering& numbering = system.numbering();
   const auto full_dof = [&](Index i) {
     return numbering.free_nodes()[i / System::node_dim] * System::node_dim + i % System::node_dim;

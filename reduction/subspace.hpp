@@ -14,11 +14,13 @@ namespace supple {
 
 /// What the construction of a subspace has to say.
 struct SubspaceReport {
-  Vector omega;           ///< angular frequencies of the modes it was made from [rad/s], rigid ones first
-  Vector residuals;       ///< relative residuals of these modes, in the same order
-  Index rigid_modes = 0;  ///< how many of them are rigid motions
-  Index dropped = 0;      ///< linearly dependent vectors that were left out
+  Vector omega;  ///< angular frequencies of the modes it was made from [rad/s], rigid ones first; may be none
+  Vector residuals;                ///< relative residuals of these modes, in the same order
+  Index rigid_modes = 0;           ///< how many of them are rigid motions
+  Index dropped = 0;               ///< linearly dependent vectors that were left out
   std::vector<std::string> notes;  ///< what a user should know: missing or surplus rigid modes, …
+  /// Of the principal component analysis that chose the columns, descending; none if there was none.
+  Vector singular_values = {};
 
   /// The number of motions without energy, known once a flexible mode follows the rigid ones (no hinge does).
   std::optional<Index> known_rigid_modes() const {
@@ -104,7 +106,7 @@ concept Subspace = requires(const S& subspace, VectorIn q, VectorOut u) {
 
 /// M-orthonormal columns with the same span as those of W, in the order given; a column whose part outside
 /// the span of the earlier ones is below `tolerance` of its length is dropped. \param mass  weight of each
-/// row, > 0 where W is not zero. \note O(rows · cols²)
+/// row, > 0 where W is not zero; zero rows stay zero. \note O(rows · cols²), in parallel with fixed bits
 struct Orthonormalized {
   RowMatrix W;
   Index dropped = 0;

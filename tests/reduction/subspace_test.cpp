@@ -3,6 +3,7 @@
 #include <reduction/training_poses.hpp>
 #include <tests/conformance/subspace_conformance.hpp>
 #include <tests/support/bars.hpp>
+#include <tests/support/outside.hpp>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -10,23 +11,6 @@
 #include <numbers>
 
 namespace supple::test {
-
-/// Two bars apart from each other: the first clamped, the second free.
-inline StvkBar clamped_and_free_bars() {
-  TetMesh mesh = bar_mesh();
-  const TetMesh other = perturbed(kuhn_box(2, 2, 3, 0.1), 0.01, 9);
-  const Index n = mesh.num_nodes();
-  const std::vector<Index> fixed = bar_end(mesh);
-  mesh.nodes.conservativeResize(n + other.num_nodes(), 3);
-  mesh.nodes.bottomRows(other.num_nodes()) = other.nodes.rowwise() + Eigen::RowVector3d(2, 1, 0);
-  for (Tet tet : other.tets) {
-    for (Index& v : tet) v += n;
-    mesh.tets.push_back(tet);
-  }
-  return {TetElasticity<StVenantKirchhoff>(mesh,
-                                           StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
-          lumped_mass(mesh, 1000.0), fixed};
-}
 
 template <typename AnyBuilder, StvkBar system(), Index num_modes>
 struct BarCase {
@@ -41,19 +25,6 @@ INSTANTIATE_TYPED_TEST_SUITE_P(Modal, SubspaceConformance, ModalCases);
 INSTANTIATE_TYPED_TEST_SUITE_P(ExtendedModal, SubspaceConformance, ExtendedModalCases);
 
 namespace {
-
-/// Part of u outside the span of an M-orthonormal basis, relative to u, in the mass norm.
-template <typename Basis>
-double outside(const Basis& basis, const StvkBar& system, const Vector& u) {
-  const auto weighted = [&](Vector v) {
-    for (Index i = 0; i < v.size(); ++i) v[i] *= system.nodal_mass()[i / 3];
-    return v;
-  };
-  if (u.isZero(0)) return 0;  // in every span
-  Vector rest = u;
-  for (int pass = 0; pass < 2; ++pass) rest -= basis.reconstruct(basis.project(weighted(rest)));
-  return std::sqrt(rest.dot(weighted(rest)) / u.dot(weighted(u)));
-}
 
 /// B_kl u: at every node, component k is component l of u.
 Vector under_linear_map(const Vector& u, int k, int l) {

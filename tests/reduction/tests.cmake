@@ -7,3 +7,5 @@ supple_test(reduced_system LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/reduced_
 supple_test(reduce LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/reduce_test.cpp LINKS supple::reduction)
 supple_test(editor LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/editor_test.cpp LINKS supple::reduction)
 supple_test(selection_study LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/selection_study_test.cpp LINKS supple::reduction)
+supple_test(modal_derivatives LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/modal_derivatives_test.cpp LINKS supple::reduction)
+supple_test(bases LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/bases_test.cpp LINKS supple::reduction)

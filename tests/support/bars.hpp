@@ -31,6 +31,29 @@ inline StvkBar free_bar() {
   return stvk_bar({});
 }
 
+/// Two bars apart from each other: the first clamped or free, the second free.
+inline StvkBar two_bars(bool first_is_clamped) {
+  TetMesh mesh = bar_mesh();
+  const TetMesh other = perturbed(kuhn_box(2, 2, 3, 0.1), 0.01, 9);
+  const Index n = mesh.num_nodes();
+  const std::vector<Index> fixed = first_is_clamped ? bar_end(mesh) : std::vector<Index>{};
+  mesh.nodes.conservativeResize(n + other.num_nodes(), 3);
+  mesh.nodes.bottomRows(other.num_nodes()) = other.nodes.rowwise() + Eigen::RowVector3d(2, 1, 0);
+  for (Tet tet : other.tets) {
+    for (Index& v : tet) v += n;
+    mesh.tets.push_back(tet);
+  }
+  return {TetElasticity<StVenantKirchhoff>(mesh,
+                                           StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
+          lumped_mass(mesh, 1000.0), fixed};
+}
+inline StvkBar clamped_and_free_bars() {
+  return two_bars(true);
+}
+inline StvkBar free_bars() {
+  return two_bars(false);
+}
+
 /// All components, each with weight one.
 inline std::vector<Index> all_components(Index count) {
   std::vector<Index> all(count);

@@ -1,0 +1,207 @@
+#include <app/edit_scene.hpp>
+#include <app/exit_guard.hpp>
+#include <app/fidelity_command.hpp>
+#include <app/json_report.hpp>
+#include <app/surface.hpp>
+#include <app/terminal.hpp>
+#include <core/check.hpp>
+#include <core/output_file.hpp>
+#include <core/parallel.hpp>
+#include <core/stopwatch.hpp>
+#include <reduction/editor.hpp>
+#include <reduction/galerkin_system.hpp>
+#include <reduction/reduce.hpp>
+
+#include <cmath>
+#include <numeric>
+
+namespace supple {
+
+namespace {
+
+/// The last shape of a scene in one space.
+struct Shape {
+  std::string name;
+  Index dimension = 0;
+  Vector displacement;  ///< of all nodes [m]
+  double elastic = 0, control = 0;
+  double construction_seconds = 0, solve_seconds = 0;
+  Index missed = 0;
+  std::vector<Vector> path;  ///< displacements after each solve
+};
+
+template <typename System, typename Displacement, typename Lead>
+void solve_path(const System& system, const Points& rest, const std::vector<Handle>& handles,
+                const std::vector<std::vector<RigidMotion>>& path, const Displacement& displacement, const Lead& lead,
+                const Progress& progress, Shape& shape) {
+  const Stopwatch watch;
+  Editor editor(system, rest);
+  for (const Handle& handle : handles) (void)editor.add(handle);
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    for (std::size_t h = 0; h < handles.size(); ++h) editor.move(static_cast<Index>(h), path[k][h]);
+    editor.start_from(lead(k, editor.state()));
+    const StaticReport report = editor.solve();
+    if (report.status == Status::NotFinite)
+      throw SolverError(shape.name + ": solve " + std::to_string(k + 1) + " is not finite; more increments may help");
+    shape.missed += report.status != Status::Converged;
+    shape.path.push_back(displacement(editor.state()));
+    tell(progress, shape.name, static_cast<double>(k + 1) / static_cast<double>(path.size()));
+  }
+  shape.displacement = shape.path.back();
+  shape.elastic = editor.elastic_energy();
+  shape.control = editor.control_energy(shape.displacement);
+  shape.solve_seconds = watch.seconds();
+}
+
+/// Area of a shell, volume of a solid.
+double measure(const Body& body) {
+  double sum = 0;
+  if (const Shell* shell = std::get_if<Shell>(&body)) {
+    for (Index t = 0; t < shell->mesh.num_triangles(); ++t) sum += triangle_area(shell->mesh, t);
+  } else {
+    const TetMesh& mesh = std::get<Solid>(body).mesh;
+    for (Index e = 0; e < mesh.num_tets(); ++e) sum += tet_volume(mesh, e);
+  }
+  return sum;
+}
+
+struct Distance {
+  double rms = 0;  ///< mass-weighted root mean square, of the diagonal
+  double l2 = 0;   ///< L² norm over area or volume, as the paper's Table 2 has it
+};
+
+Distance distance(const Body& body, const Vector& a, const Vector& b) {
+  const Vector mass = nodal_mass(body), difference = a - b;
+  const double rms = std::sqrt(as_points(difference).rowwise().squaredNorm().dot(mass) / mass.sum());
+  return {rms / bounding_box(node_positions(body)).diagonal(), rms / std::sqrt(measure(body))};
+}
+
+void draw_shapes(const std::filesystem::path& path, const Body& body, const std::vector<Shape>& shapes) {
+  const Surface surface(body);
+  const Points rest = surface.rows(node_positions(body)), reference = surface.rows(as_points(shapes.front().displacement));
+  std::vector<PictureObject> objects;
+  for (const Shape& shape : shapes) {
+    const Points moved = surface.rows(as_points(shape.displacement));
+    PictureObject object{.positions = rest + moved, .triangles = surface.triangles};
+    if (&shape != &shapes.front()) object.scalar = (moved - reference).rowwise().norm();
+    object.caption = shape.name;
+    objects.push_back(std::move(object));
+  }
+  PictureOptions options;
+  options.width = 500 * static_cast<int>(shapes.size());
+  options.height = 700;
+  options.scale.label = "distance [m]";
+  options.scale.low = 0.0;
+  options.scale.high = scale_end(objects);
+  write_picture(path, objects, options);
+}
+
+}  // namespace
+
+void FidelityCommand::run() const {
+  set_num_threads(threads);
+  require_writable(json);
+  const Stopwatch total;
+  const NamedMesh named = load_mesh(mesh);
+  for (const std::string& warning : named.notes.warnings) warn(mesh + ": " + warning);
+  const Body body = load_body(*this, named);
+  const EditScene edits = read_edit_scene(scene, body);
+  const ReduceOptions options = reduce_options(*this, named);
+  for (const std::string& name : subspaces)
+    if (name == "pca" && !snapshots) throw InputError("--subspaces pca needs --snapshots");
+  if (!output.empty()) make_folder(output);
+  const Progress progress = progress_bar();
+  const Points& rest = node_positions(body);
+
+  std::vector<Shape> shapes(1);
+  shapes[0].name = "full";
+  with_force_model(body, [&]<typename Model>(const std::shared_ptr<const Model>& force) {
+    const auto system = std::make_shared<const FullSystem<Model>>(force, nodal_mass(body), fixed_nodes(body));
+    const auto quiet = [](const std::string&, auto&& work) { return work([](double) {}); };
+    std::vector<Handle> handles;
+    std::vector<std::vector<RigidMotion>> path;
+    Index dimension = options.dimension;
+    const auto in_subspace = [&](const std::string& name, auto&& visit) {
+      SubspaceChoice choice = options.subspace_choice();
+      choice.name = name;
+      choice.dimension = dimension;
+      with_subspace(*system, choice, progress, quiet, visit);
+    };
+    // the extended basis first: it sets the dimension, the handles, and leads the full system
+    std::vector<std::string> order{"extended"};
+    for (const std::string& name : subspaces)
+      if (name != "extended") order.push_back(name);
+    for (const std::string& name : order) {
+      const Stopwatch watch;
+      in_subspace(name, [&]<typename S>(const std::shared_ptr<const S>& subspace) {
+        Shape shape;
+        shape.name = name;
+        shape.dimension = subspace->dim();
+        shape.construction_seconds = watch.seconds();
+        if (dimension == 0) dimension = subspace->dim();
+        const GalerkinSystem<Model, S> reduced(system, subspace);
+        if (handles.empty()) {
+          const ReducedModes modes = reduced_modes(reduced.rest_stiffness(), subspace->report.known_rigid_modes());
+          if (modes.num_zero == modes.omega.size()) throw SolverError("the object has no flexible mode");
+          handles = make_handles(edits, std::pow(modes.omega[modes.num_zero], 2), system->nodal_mass().sum());
+          path = handle_paths(edits, handles, rest);
+        }
+        solve_path(
+            reduced, rest, handles, path, [&](VectorIn q) -> Vector { return subspace->reconstruct(q); },
+            [](std::size_t, const Vector& q) { return q; }, progress, shape);
+        shapes.push_back(std::move(shape));
+      });
+    }
+    const std::vector<Vector>& lead = shapes[1].path;
+    shapes[0].dimension = system->dim();
+    solve_path(
+        *system, rest, handles, path, [&](VectorIn u) -> Vector { return system->expand(u); },
+        [&](std::size_t k, const Vector& u) -> Vector {
+          return u + system->restrict(k == 0 ? lead[0] : Vector(lead[k] - lead[k - 1]));
+        },
+        progress, shapes[0]);
+  });
+  if (std::find(subspaces.begin(), subspaces.end(), "extended") == subspaces.end()) shapes.erase(shapes.begin() + 1);
+  if (!output.empty()) draw_shapes(output / "shapes.png", body, shapes);
+  clear_progress();
+
+  const Shape& full = shapes.front();
+  std::string table = "| space | d | rms distance [% of the diagonal] | L² over " +
+                      std::string(std::holds_alternative<Shell>(body) ? "area" : "volume") +
+                      " | elastic energy [J] | of handles [J] | built [s] | solved [s] |\n"
+                      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+  Json report{{"command", "fidelity"}, {"version", SUPPLE_VERSION}, {"mesh", mesh}, {"scene", scene.string()}};
+  report["diagonal"] = bounding_box(rest).diagonal();
+  report["measure"] = measure(body);
+  report["options"] = problem_json(*this, options);
+  report["shapes"] = Json::array();
+  for (const Shape& shape : shapes) {
+    const Distance off = distance(body, shape.displacement, full.displacement);
+    report["shapes"].push_back({{"space", shape.name},
+                                {"dimension", shape.dimension},
+                                {"rms_over_diagonal", off.rms},
+                                {"l2_over_measure", off.l2},
+                                {"elastic_energy", shape.elastic},
+                                {"control_energy", shape.control},
+                                {"missed_solves", shape.missed},
+                                {"construction_seconds", shape.construction_seconds},
+                                {"solve_seconds", shape.solve_seconds}});
+    table += "| " + shape.name + " | " + std::to_string(shape.dimension) + " | " + shown(100 * off.rms, 3) + " | " +
+             shown(off.l2, 3) + " | " + shown(shape.elastic, 4) + " | " + shown(shape.control, 3) + " | " +
+             shown(shape.construction_seconds, 3) + " | " + shown(shape.solve_seconds, 3) + " |\n";
+    if (shape.missed > 0)
+      warn(shape.name + ": " + std::to_string(shape.missed) + " of " + std::to_string(shape.path.size()) +
+           " solves missed the tolerance; try more increments");
+  }
+  report["peak_memory"] = peak_resident_memory();
+  report["seconds"] = {{"total", total.seconds()}};
+  if (!output.empty()) {
+    const ExitGuard guard;
+    write_file(output / "table.md", table);
+  }
+  if (!output.empty()) write_json(output / "report.json", report);
+  if (!is_stdout(json)) std::fputs(("Shapes of " + mesh + " under " + edits.description + "\n\n" + table).c_str(), stdout);
+  write_json(json, report);
+}
+
+}  // namespace supple
