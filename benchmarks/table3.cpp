@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   const TetMesh mesh = is_builtin(mesh_name) ? builtin_mesh(mesh_name) : read_tet_mesh(mesh_name);
   std::vector<Index> fixed;
   for (const std::string& rule : fix) {
-    const std::vector<Index> nodes = select_nodes(mesh, rule);
+    const std::vector<Index> nodes = select_nodes(mesh.nodes, rule);
     fixed.insert(fixed.end(), nodes.begin(), nodes.end());
   }
   std::sort(fixed.begin(), fixed.end());

@@ -23,7 +23,7 @@ struct SubspaceChoice {
 
 ///   "extended"     modes under all linear maps (Alg. 2)
 ///   "modal"        the linear modes alone; `dimension` of them, if that is given
-///   "derivatives"  modes and the best of their modal derivatives
+///   "derivatives"  modes, the affine fields of free parts, and the best of the modes' derivatives
 ///   "skinning"     skinning eigenmodes, as many weights as fit in `dimension`; else (modes + 1) / 2
 ///   "pca"          principal components of the snapshots
 const std::vector<std::string>& known_subspaces();
@@ -62,6 +62,7 @@ void with_subspace(const System& system, const SubspaceChoice& choice, const Pro
     visit(stage("modes and derivatives", [&](auto) {
       return share(ModalDerivatives{.num_modes = choice.modes,
                                     .dimension = choice.dimension,
+                                    .affine_fields = true,
                                     .tolerance = choice.tolerance,
                                     .seed = choice.seed,
                                     .progress = progress}(system));

@@ -1,0 +1,150 @@
+#include <io/csv.hpp>
+#include <io/image.hpp>
+#include <tests/app/supple_process.hpp>
+
+#include <gmock/gmock.h>
+
+namespace supple::test {
+
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr const char* bend = R"({
+  "description": "bend the bar",
+  "handles": [{"name": "left", "nodes": "x<10%", "samples": 30}, {"name": "right", "nodes": "x>90%", "weight": "5 kN/m"}],
+  "edits": [
+    {"increments": 4, "moves": [{"handle": "right", "axis": [0, 0, 1], "angle": "40 deg", "centre": [0.5, 0.1, 0.1]}]},
+    {"moves": [{"handle": "left", "translation": ["1 cm", 0, 0]}]}
+  ]
+})";
+
+class EditCommandTest : public SuppleProcess {
+ protected:
+  void reduce(Arguments more = {}) const {
+    Arguments arguments{"reduce", "bar:8x2x2", "-o", "bar.supple", "--poses", "40", "--points", "80", "--held-out", "0"};
+    if (more.empty()) more = {"--modes", "11"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = supple(arguments);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+};
+
+TEST_F(EditCommandTest, BendsABarAndKeepsWhatItReports) {
+  reduce();
+  write("bend.json", bend);
+  const json report = this->report({"edit", "bar.supple", "--scene", "bend.json", "-o", "bent"});
+  EXPECT_EQ(report["solves"], 5);
+  EXPECT_EQ(report["missed_solves"], 0);
+  EXPECT_LE(report["worst_residual"], report["tolerance"]);
+  EXPECT_EQ(report["handles"][0]["samples"], 9);  // all there are
+  EXPECT_EQ(report["handles"][1]["weight"], 5000.0);
+  EXPECT_GT(report["elastic_energy"], 0.0);
+  EXPECT_EQ(json::parse(read("bent/report.json")), report);
+  const CsvTable solves = read_csv(folder / "bent/solves.csv");
+  ASSERT_EQ(solves.num_rows(), 5);
+  EXPECT_NEAR(solves.numbers("elastic")[4], report["elastic_energy"].get<double>(), 1e-9);
+  EXPECT_GT(read_png(folder / "bent/picture.png").width, 600);
+  EXPECT_TRUE(std::filesystem::exists(folder / "bent/series.pvd"));
+
+  for (const char* solver : {"bfgs", "nlopt"}) {  // the same equilibrium
+    const json other = this->report({"edit", "bar.supple", "--scene", "bend.json", "--solver", solver, "-o", solver});
+    EXPECT_NEAR(other["elastic_energy"].get<double>(), report["elastic_energy"].get<double>(),
+                1e-3 * report["elastic_energy"].get<double>());
+    EXPECT_LT(this->report({"compare", solver, "bent"})["position_error"]["relative"], 5e-3);
+  }
+  const json full = this->report({"edit", "bar.supple", "--scene", "bend.json", "--full", "-o", "full"});
+  EXPECT_EQ(full["missed_solves"], 0);
+  EXPECT_LT(full["elastic_energy"], report["elastic_energy"].get<double>() * 1.2);
+  EXPECT_LT(this->report({"compare", "bent", "full"})["position_error"]["relative"], 0.1);
+}
+
+TEST_F(EditCommandTest, TakesHandlesByLabelsAndMotionsByMatrix) {
+  reduce();
+  std::string labels = "# one a node\n";
+  for (int v = 0; v < 81; ++v) labels += v < 9 ? "0\n" : v >= 72 ? "2\n" : "1\n";
+  write("bar.sel", labels);
+  write("scene.json", R"({"handles": [{"name": "a", "file": "bar.sel", "label": 0}, {"name": "b", "file": "bar.sel", "label": 2}],
+    "edits": [{"moves": [{"handle": "b", "matrix": [1,0,0,0, 0,1,0,0.05, 0,0,1,0, 0,0,0,1]}]}]})");
+  const json report = this->report({"edit", "bar.supple", "--scene", "scene.json"});
+  EXPECT_EQ(report["handles"][0]["nodes"], 9);
+  EXPECT_EQ(report["handles"][1]["nodes"], 9);
+  EXPECT_GT(report["elastic_energy"], 0.0);
+}
+
+TEST_F(EditCommandTest, RefusesBadScenesInOneLineAndLeavesNothing) {
+  reduce();
+  const auto refuse = [&](const std::string& scene, const std::vector<std::string>& parts) {
+    write("scene.json", scene);
+    expect_refusal({"edit", "bar.supple", "--scene", "scene.json", "-o", "run"}, parts);
+    EXPECT_FALSE(std::filesystem::exists(folder / "run")) << scene;
+  };
+  const std::string left = R"("handles": [{"name": "left", "nodes": "x<10%"}], )";
+  refuse("{" + left + R"("edits": []})", {"edits", "empty"});
+  refuse(R"({"handles": [], "edits": []})", {"handles", "empty"});
+  refuse("{" + left + R"("edits": [{"moves": [{"handle": "right"}]}]})", {"/edits/0/moves/0/handle", "right"});
+  refuse("{" + left + R"("edits": [{"moves": [{"handle": "left", "angle": 1}]}]})", {"axis"});
+  refuse("{" + left + R"("edits": [{"moves": [{"handle": "left", "angle": 1, "axis": [0,0,0]}]}]})", {"axis", "direction"});
+  refuse("{" + left + R"("edits": [{"moves": [{"handle": "left", "centre": [0,0,0]}]}]})", {"centre", "angle"});
+  refuse("{" + left + R"("edits": [{"moves": [{"handle": "left", "matrix": [2,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}]})",
+         {"matrix", "rigid"});
+  refuse("{" + left + R"("edits": [{"increments": 0, "moves": []}]})", {"increments"});
+  refuse(R"({"handles": [{"name": "a", "nodes": "x<10%", "file": "b"}], "edits": [{"moves": []}]})", {"one of"});
+  refuse(R"({"handles": [{"name": "a", "nodes": "x>99"}], "edits": [{"moves": []}]})", {"/handles/0", "no node"});
+  refuse(R"({"handles": [{"name": "a", "file": "none.sel", "label": 1}], "edits": [{"moves": []}]})", {"none.sel"});
+  refuse("{" + left + R"("edit": [], "edits": [{"moves": []}]})", {"edit"});
+  write("short.sel", "1\n2\n");
+  refuse(R"({"handles": [{"name": "a", "file": "short.sel", "label": 1}], "edits": [{"moves": []}]})", {"short.sel", "81"});
+  write("bad.sel", "1\nx\n");
+  refuse(R"({"handles": [{"name": "a", "file": "bad.sel", "label": 1}], "edits": [{"moves": []}]})", {"bad.sel:2"});
+  write("scene.json", bend);
+  expect_refusal({"edit", "bar.supple", "--scene", "scene.json", "--full", "--solver", "nlopt"}, {"nlopt", "reduced"});
+  expect_refusal({"edit", "bar.supple", "--scene", "scene.json", "--tolerance", "0"}, {"tolerance"});
+}
+
+TEST_F(EditCommandTest, EditsInEverySubspace) {
+  write("bend.json", bend);
+  reduce();
+  ASSERT_EQ(supple({"simulate", "bar.supple", "-o", "run", "--every", "5"}).exit_code, 0);
+  ASSERT_EQ(supple({"reduce", "bar:8x2x2", "-o", "reference.supple", "--modes", "8", "--poses", "20", "--points", "40",
+                    "--held-out", "0"}).exit_code, 0);
+  ASSERT_EQ(supple({"simulate", "reference.supple", "-o", "snapshots", "--every", "5"}).exit_code, 0);
+  const std::vector<Arguments> choices{{"--subspace", "derivatives", "--modes", "4", "--dimension", "24"},
+                                       {"--subspace", "skinning", "--dimension", "48"},
+                                       {"--subspace", "modal", "--modes", "18"},
+                                       {"--subspace", "pca", "--snapshots", "snapshots", "--dimension", "12"}};
+  for (const Arguments& choice : choices) {
+    SCOPED_TRACE(choice[1]);
+    reduce(choice);
+    const json info = report({"info", "bar.supple"});
+    EXPECT_EQ(info["subspace"], choice[1]);
+    EXPECT_GT(info["dimension"], 5);
+    EXPECT_GT(report({"edit", "bar.supple", "--scene", "bend.json"})["elastic_energy"], 0.0);
+    EXPECT_EQ(supple({"simulate", "bar.supple", "--time", "0.1", "--step", "0.01", "--json", "-"}).exit_code, 0);
+  }
+  expect_refusal({"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "pca"}, {"--snapshots"});
+  expect_refusal({"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "derivatives", "--modes", "9", "--dimension", "10"},
+                 {"10"});
+}
+
+TEST_F(EditCommandTest, ComparesSubspacesByTheirShapes) {
+  write("bend.json", bend);
+  const json report = this->report({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--modes", "10", "-o", "fidelity"});
+  ASSERT_EQ(report["shapes"].size(), 5u);
+  EXPECT_EQ(report["shapes"][0]["space"], "full");
+  EXPECT_EQ(report["shapes"][0]["rms_over_diagonal"], 0.0);
+  const auto off = [&](int k) { return report["shapes"][k]["rms_over_diagonal"].get<double>(); };
+  EXPECT_EQ(report["shapes"][1]["space"], "extended");
+  EXPECT_EQ(report["shapes"][3]["space"], "modal");
+  EXPECT_EQ(report["shapes"][3]["dimension"], report["shapes"][1]["dimension"]);
+  EXPECT_LT(off(1), 0.5 * off(3));  // the paper's finding
+  EXPECT_GE(report["shapes"][1]["elastic_energy"].get<double>() + report["shapes"][1]["control_energy"].get<double>(),
+            (report["shapes"][0]["elastic_energy"].get<double>() + report["shapes"][0]["control_energy"].get<double>()) * (1 - 1e-6));
+  EXPECT_GT(read_png(folder / "fidelity/shapes.png").width, 1000);
+  EXPECT_THAT(read("fidelity/table.md"), HasSubstr("| derivatives |"));
+}
+
+}  // namespace
+
+}  // namespace supple::test
