@@ -157,7 +157,9 @@ void EditCommand::run() const {
     for (Index k = 1; k < frames_count; ++k) trajectory.elastic[k] = result.solves[k - 1].elastic;
     save_trajectory(output / trajectory_file, trajectory);
     write_solves(output / "solves.csv", result);
-    reconstruction = write_frames(output, frames, reduced, trajectory, progress);
+    reconstruction = write_frames(
+        output, frames, reduced, trajectory,
+        [](double k) { return k == 0 ? std::string("rest") : "solve " + shown(k); }, progress);
     finish("results");
   }
   clear_progress();

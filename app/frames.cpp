@@ -4,7 +4,6 @@
 #include <core/stopwatch.hpp>
 #include <io/vtu_writer.hpp>
 
-#include <cstdio>
 #include <optional>
 
 namespace supple {
@@ -35,14 +34,12 @@ std::vector<Index> telling_frames(const std::vector<Points>& surface_displacemen
 
 void draw_frames(const std::filesystem::path& path, const Points& rest,
                  const std::vector<Triangle>& triangles, const std::vector<Points>& displacement,
-                 const std::vector<double>& times) {
+                 const Vector& times, const std::function<std::string(double)>& caption) {
   std::vector<PictureObject> objects;
   for (const Index f : telling_frames(displacement)) {
     PictureObject object{.positions = rest + displacement[f], .triangles = triangles};
     object.scalar = displacement[f].rowwise().norm();
-    char time[32];
-    std::snprintf(time, sizeof time, "t = %.3f s", times[f]);
-    object.caption = time;
+    object.caption = caption(times[f]);
     objects.push_back(std::move(object));
   }
   PictureOptions options;
@@ -57,7 +54,7 @@ void draw_frames(const std::filesystem::path& path, const Points& rest,
 }  // namespace
 
 double write_frames(const std::filesystem::path& folder, const std::string& frames, const ReducedModel& model,
-                    const Trajectory& trajectory, const Progress& progress) {
+                    const Trajectory& trajectory, const std::function<std::string(double)>& caption, const Progress& progress) {
   const Points& nodes = node_positions(model.body);
   const Surface surface(model.body);
   const Points rest = surface.rows(nodes);
@@ -93,7 +90,7 @@ double write_frames(const std::filesystem::path& folder, const std::string& fram
   }
   tell(progress, "picture", 0);
   draw_frames(folder / "picture.png", rest, surface.triangles, surface_displacement,
-              {trajectory.time.begin(), trajectory.time.end()});
+              trajectory.time, caption);
   return seconds;
 }
 

@@ -250,7 +250,8 @@ void SimulateCommand::run() const {
       draw_energies(output / "energy.png", result);
     else
       warn("gnuplot is not installed: there will be no energy.png");
-    reconstruction = write_frames(output, frames, reduced, trajectory, progress);
+    reconstruction = write_frames(
+        output, frames, reduced, trajectory, [](double t) { return "t = " + shown(t, 3) + " s"; }, progress);
     finish("results");
   }
   clear_progress();

@@ -1,0 +1,100 @@
+#include <physics/composite_model.hpp>
+#include <physics/embedded_model.hpp>
+#include <reduction/modal_basis.hpp>
+#include <reduction/reduced_system.hpp>
+#include <tests/conformance/force_model_conformance.hpp>
+#include <tests/support/bars.hpp>
+#include <tests/support/force_models.hpp>
+
+namespace supple::test {
+namespace {
+
+/// The surface of a solid as a shell, on the nodes that it has there.
+EmbeddedModel<DiscreteShell> skin_of(const TetMesh& mesh, const ShellMaterial& material) {
+  std::vector<Index> nodes, number(mesh.num_nodes(), -1);
+  TriangleMesh skin{{}, boundary_faces(mesh)};
+  for (Triangle& triangle : skin.triangles)
+    for (Index& v : triangle) {
+      if (number[v] < 0) {
+        number[v] = static_cast<Index>(nodes.size());
+        nodes.push_back(v);
+      }
+      v = number[v];
+    }
+  skin.nodes = mesh.nodes(nodes, Eigen::all);
+  return {DiscreteShell(skin, material), nodes, mesh.num_nodes()};
+}
+
+/// Tets with a skin.
+struct SkinnedBar {
+  static constexpr double length = 0.1;
+  static TetMesh mesh() { return TetBar<StVenantKirchhoff>::mesh(); }
+  static auto make() {
+    return CompositeModel(TetBar<StVenantKirchhoff>::make(),
+                          skin_of(mesh(), ShellMaterial::from({.young = 1e6, .poisson = 0.4}, 0.02)));
+  }
+};
+struct EmbeddedShell {
+  static constexpr double length = 0.1;
+  static auto make() { return EmbeddedModel(ClosedShell::make(), {9, 3, 5, 0, 2, 7}, 11); }
+};
+/// Tets of two laws, and springs, whose stencils are smaller.
+struct SprungBar {
+  static constexpr double length = 0.1;
+  static auto make() {
+    return CompositeModel(TetBar<StVenantKirchhoff>::make(), SpringBar::make(), TetBar<MooneyRivlin>::make());
+  }
+};
+
+TEST(CompositeModel, AddsUpItsParts) {
+  const auto mesh = SprungBar::make();
+  const Vector mass = SpringBar::nodal_mass();
+  const FullSystem whole(mesh, mass, {0, 1});
+  const FullSystem stvk(TetBar<StVenantKirchhoff>::make(), mass, {0, 1});
+  const FullSystem springs(SpringBar::make(), mass, {0, 1});
+  const FullSystem mooney(TetBar<MooneyRivlin>::make(), mass, {0, 1});
+  const Vector u = random_vector(whole.dim(), 0.01, 4);
+  const double energy = stvk.energy(u) + springs.energy(u) + mooney.energy(u);
+  EXPECT_NEAR(whole.energy(u), energy, 1e-12 * energy);
+  const Vector force = stvk.force(u) + springs.force(u) + mooney.force(u);
+  EXPECT_TRUE(is_near(whole.force(u), force, 1e-12 * force.norm()));
+  const Matrix K = Matrix(stvk.stiffness(u)) + Matrix(springs.stiffness(u)) + Matrix(mooney.stiffness(u));
+  EXPECT_TRUE(is_near(Matrix(whole.stiffness(u)), K, 1e-12 * K.norm()));
+  // springs along edges of tets couple nothing that tets do not
+  EXPECT_EQ(whole.rest_stiffness().nonZeros(), stvk.rest_stiffness().nonZeros());
+}
+
+TEST(CompositeModel, CountsComponentsPartByPart) {
+  const auto model = SprungBar::make();
+  EXPECT_EQ(model.num_components(), 12 + SpringBar::make().num_components() + 12);
+  EXPECT_EQ(model.part_of(0), 0u);
+  EXPECT_EQ(model.part_of(11), 0u);
+  EXPECT_EQ(model.part_of(12), 1u);
+  EXPECT_EQ(model.part_of(model.num_components() - 1), 2u);
+  EXPECT_THROW(CompositeModel(TetBar<StVenantKirchhoff>::make(), ClosedShell::make()), std::invalid_argument);
+}
+
+TEST(CompositeModel, IsReducedLikeAnyModel) {
+  const TetMesh mesh = bar_mesh();
+  const auto force = std::make_shared<const CompositeModel<TetElasticity<StVenantKirchhoff>, EmbeddedModel<DiscreteShell>>>(
+      TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
+      skin_of(mesh, ShellMaterial::from({.young = 1e7, .poisson = 0.4}, 0.002)));
+  const FullSystem system(force, lumped_mass(mesh, 1000.0), bar_end(mesh));
+  const auto subspace = std::make_shared<const NodalBasis>(ExtendedModalBasis{.num_modes = 5}(system));
+  const Index m = force->num_components();
+  const ReducedSystem reduced(force, subspace, all_components(m), Vector::Ones(m), project_stiffness(*subspace, system),
+                              system.nodal_mass());
+  const Vector q = random_vector(subspace->dim(), 0.01, 9);
+  Vector f(subspace->dim());
+  reduced.force(q, f);
+  const Vector exact = subspace->project(system.expand(system.force(system.restrict(subspace->reconstruct(q)))));
+  EXPECT_TRUE(is_near(f, exact, 1e-10 * exact.norm()));
+}
+
+}  // namespace
+
+INSTANTIATE_TYPED_TEST_SUITE_P(SkinnedBar, ForceModelConformance, SkinnedBar);
+INSTANTIATE_TYPED_TEST_SUITE_P(EmbeddedShell, ForceModelConformance, EmbeddedShell);
+INSTANTIATE_TYPED_TEST_SUITE_P(SprungBar, ForceModelConformance, SprungBar);
+
+}  // namespace supple::test
