@@ -1,4 +1,5 @@
 #include <reduction/editor.hpp>
+#include <reduction/galerkin_system.hpp>
 #include <reduction/modal_basis.hpp>
 #include <reduction/reduced_system.hpp>
 #include <tests/support/bars.hpp>
@@ -142,6 +143,28 @@ TEST(Editor, MethodsAgreeInTheReducedSpaceAndWithTheFullSystemWhereTheSubspaceIs
     EXPECT_TRUE(is_near(subspace->reconstruct(editor.state()), full.state(), 1e-4 * full.state().norm()));
     EXPECT_NEAR(editor.elastic_energy(), full.elastic_energy(), 1e-4 * full.elastic_energy());
   }
+}
+
+TEST(GalerkinSystem, IsTheReducedSystemOfAllComponents) {
+  const auto full = std::make_shared<const StvkBar>(clamped_bar());
+  const auto subspace = std::make_shared<const NodalBasis>(ExtendedModalBasis{.num_modes = 4}(*full));
+  const GalerkinSystem galerkin(full, subspace);
+  const Index m = full->model().num_components();
+  const ReducedSystem reduced(full->shared_model(), subspace, all_components(m), Vector::Ones(m),
+                              project_stiffness(*subspace, *full), full->nodal_mass());
+  static_assert(DynamicalSystem<std::remove_const_t<decltype(galerkin)>>);
+  const Vector q = random_vector(galerkin.dim(), 0.02, 5);
+  Vector f(q.size());
+  galerkin.force(q, f);
+  EXPECT_TRUE(is_near(f, reduced.force(q), 1e-11 * f.norm()));
+  EXPECT_NEAR(galerkin.energy(q), reduced.energy(q), 1e-11 * reduced.energy(q));
+  Matrix K;
+  galerkin.stiffness(q, K);
+  EXPECT_TRUE(is_near(K, reduced.stiffness(q), 1e-11 * K.norm()));
+  const Loads loads{.gravity = {1, -2, 3}, .forces = {{40, {0, 1, 0}}}, .springs = {{50, 30.0, {0.1, 0, 0}}}};
+  const auto a = galerkin.project(loads), b = reduced.project(loads);
+  EXPECT_TRUE(is_near(a.force, b.force, 1e-12 * a.force.norm()));
+  EXPECT_TRUE(is_near(a.stiffness, b.stiffness, 1e-12 * a.stiffness.norm()));
 }
 
 TEST(Editor, HandlesComeAndGo) {
