@@ -113,13 +113,7 @@ void draw_comparison(const std::filesystem::path& path, const Body& body,
   objects[1] = {.positions = rest + a, .triangles = surface.triangles};
   objects[1].scalar = (a - b).rowwise().norm();
   objects[1].caption = name.first + text;
-  PictureOptions options;
-  options.width = 1600;
-  options.height = 800;
-  options.scale.label = "distance [m]";
-  options.scale.low = 0.0;
-  options.scale.high = scale_end(objects);
-  write_picture(path, objects, options);
+  write_coloured_picture(path, objects, "distance [m]", 1600, 800);
 }
 
 }  // namespace
@@ -133,8 +127,8 @@ void CompareCommand::run() const {
   if (one_model && a.u.cols() != (a.reduced ? model_b.dim() : 3 * num_nodes(model_b.body)))
     throw InputError(first.string() + ": its frames do not fit its model");
   const ReducedModel model_a = one_model ? model_b : load_model_of(a, first);
-  const Points &nodes = node_positions(model_b.body), &others = node_positions(model_a.body);
-  if (others.rows() != nodes.rows() || others != nodes)
+  const Points& nodes = node_positions(model_b.body);
+  if (!has_nodes(model_a.body, nodes))
     throw InputError(first.string() + " and " + reference.string() + " are of different meshes");
   const std::vector<std::pair<Index, Index>> frames = common_frames(*this, a, b);
   if (!output.empty()) make_folder(output);

@@ -46,7 +46,6 @@ void CompareSelectorsCommand::run() const {
   if (runs < 1) throw InputError("--runs is " + std::to_string(runs) + ", expected at least 1");
   const Stopwatch total;
   const NamedMesh named = load_mesh(mesh);
-  for (const std::string& warning : named.notes.warnings) warn(mesh + ": " + warning);
   const Body body = load_body(*this, named);
   const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
   for (const Index size : sizes)

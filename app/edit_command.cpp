@@ -19,8 +19,6 @@ namespace supple {
 
 namespace {
 
-using Seconds = std::vector<std::pair<std::string, double>>;
-
 struct SolveRecord {
   StaticReport report;
   double elastic = 0, control = 0;  ///< energies [J]
@@ -98,26 +96,18 @@ StaticOptions decide(const EditCommand& command, const EditScene& scene) {
 void EditCommand::run() const {
   set_num_threads(threads);
   require_writable(json);
-  const Stopwatch total;
-  Stopwatch watch;
-  Seconds seconds;
-  const auto finish = [&](const char* stage) {
-    seconds.emplace_back(stage, watch.seconds());
-    watch.restart();
-  };
+  StageTimes times;
   const ReducedModel reduced = load_model(model);
   const EditScene edits = read_edit_scene(scene, reduced.body);
   const StaticOptions options = decide(*this, edits);
   const Points& rest = node_positions(reduced.body);
-  const ReducedModes modes = std::visit(
-      [&](const auto& basis) { return reduced_modes(reduced.rest_stiffness, basis->report.known_rigid_modes()); },
-      reduced.subspace);
+  const ReducedModes modes = reduced_modes(reduced);
   if (modes.num_zero == modes.omega.size()) throw SolverError("the model has no flexible mode");
   const double softest = modes.omega[modes.num_zero] * modes.omega[modes.num_zero];
   const std::vector<Handle> handles = make_handles(edits, softest, nodal_mass(reduced.body).sum());
   const auto path = handle_paths(edits, handles, rest);
   if (!output.empty()) make_folder(output);
-  finish("read model");
+  times.finish("read model");
 
   const Progress progress = progress_bar();
   const auto as_it_is = [](Index, const Vector& state) { return state; };
@@ -139,7 +129,7 @@ void EditCommand::run() const {
       const auto expand = [&](VectorIn u) -> Vector { return system.expand(u); };
       return run_edits(system, rest, handles, path, options, expand, expand, led, progress);
     });
-  finish("edits");
+  times.finish("edits");
   const Index frames_count = result.states.rows();
   double reconstruction = 0;
   if (!output.empty()) {
@@ -160,21 +150,21 @@ void EditCommand::run() const {
     reconstruction = write_frames(
         output, frames, reduced, trajectory,
         [](double k) { return k == 0 ? std::string("rest") : "solve " + shown(k); }, progress);
-    finish("results");
+    times.finish("results");
   }
   clear_progress();
 
-  std::vector<double> times;
+  std::vector<double> solve_seconds;
   Index missed = 0, iterations = 0;
   double worst = 0;
   for (const SolveRecord& solve : result.solves) {
-    times.push_back(solve.seconds);
+    solve_seconds.push_back(solve.seconds);
     missed += solve.report.status != Status::Converged;
     iterations += solve.report.iterations;
     worst = std::max(worst, solve.report.residual);
   }
-  std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end());
-  const double median = times[times.size() / 2];
+  std::nth_element(solve_seconds.begin(), solve_seconds.begin() + solve_seconds.size() / 2, solve_seconds.end());
+  const double median = solve_seconds[solve_seconds.size() / 2];
   const SolveRecord& last = result.solves.back();
   Json report;
   report["command"] = "edit";
@@ -200,7 +190,7 @@ void EditCommand::run() const {
   report["elastic_energy"] = last.elastic;
   report["control_energy"] = last.control;
   report["threads"] = num_threads();
-  report["seconds"] = json_seconds(seconds, total.seconds());
+  report["seconds"] = json_seconds(times.seconds(), times.total());
   report["peak_memory"] = peak_resident_memory();
   if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) {
@@ -216,7 +206,7 @@ void EditCommand::run() const {
                         shown(1e3 * reconstruction / static_cast<double>(frames_count), 3) + " ms a frame of all nodes");
     if (!output.empty()) rows.emplace_back("results", output.string());
     print_rows(stdout, "edit of " + model.string(), rows);
-    print_stages(stdout, seconds, total.seconds());
+    print_stages(stdout, times.seconds(), times.total());
   }
   write_json(json, report);
   if (missed > 0)

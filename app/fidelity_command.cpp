@@ -12,6 +12,7 @@
 #include <reduction/galerkin_system.hpp>
 #include <reduction/reduce.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -87,13 +88,7 @@ void draw_shapes(const std::filesystem::path& path, const Body& body, const std:
     object.caption = shape.name;
     objects.push_back(std::move(object));
   }
-  PictureOptions options;
-  options.width = 500 * static_cast<int>(shapes.size());
-  options.height = 700;
-  options.scale.label = "distance [m]";
-  options.scale.low = 0.0;
-  options.scale.high = scale_end(objects);
-  write_picture(path, objects, options);
+  write_coloured_picture(path, objects, "distance [m]", 500 * static_cast<int>(shapes.size()), 700);
 }
 
 }  // namespace
@@ -103,12 +98,11 @@ void FidelityCommand::run() const {
   require_writable(json);
   const Stopwatch total;
   const NamedMesh named = load_mesh(mesh);
-  for (const std::string& warning : named.notes.warnings) warn(mesh + ": " + warning);
   const Body body = load_body(*this, named);
   const EditScene edits = read_edit_scene(scene, body);
-  const ReduceOptions options = reduce_options(*this, named);
-  for (const std::string& name : subspaces)
-    if (name == "pca" && !snapshots) throw InputError("--subspaces pca needs --snapshots");
+  ProblemOptions problem = *this;
+  problem.subspace = std::find(subspaces.begin(), subspaces.end(), "pca") != subspaces.end() ? "pca" : "extended";
+  const ReduceOptions options = reduce_options(problem, named);  // its subspace says whether there are snapshots
   if (!output.empty()) make_folder(output);
   const Progress progress = progress_bar();
   const Points& rest = node_positions(body);
@@ -173,7 +167,7 @@ void FidelityCommand::run() const {
   Json report{{"command", "fidelity"}, {"version", SUPPLE_VERSION}, {"mesh", mesh}, {"scene", scene.string()}};
   report["diagonal"] = bounding_box(rest).diagonal();
   report["measure"] = measure(body);
-  report["options"] = problem_json(*this, options);
+  report["options"] = problem_json(problem, options);
   report["shapes"] = Json::array();
   for (const Shape& shape : shapes) {
     const Distance off = distance(body, shape.displacement, full.displacement);

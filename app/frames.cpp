@@ -42,13 +42,7 @@ void draw_frames(const std::filesystem::path& path, const Points& rest,
     object.caption = caption(times[f]);
     objects.push_back(std::move(object));
   }
-  PictureOptions options;
-  options.width = 1600;
-  options.height = 800;
-  options.scale.label = "displacement [m]";
-  options.scale.low = 0.0;
-  options.scale.high = scale_end(objects);
-  write_picture(path, objects, options);
+  write_coloured_picture(path, objects, "displacement [m]", 1600, 800);
 }
 
 }  // namespace

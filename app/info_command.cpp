@@ -36,16 +36,25 @@ std::string joined(const Vector& values, Index most) {
   return text + (values.size() > most ? ", ..." : "");
 }
 
+/// Sum of sizes (volumes, areas) of the elements, worst and mean radius ratio.
+struct Shapes {
+  double size = 0, worst = 1, mean = 0;
+};
+template <typename Mesh>
+Shapes element_shapes(const Mesh& mesh, Index count, double (*size)(const Mesh&, Index)) {
+  Shapes shapes;
+  for (Index e = 0; e < count; ++e) {
+    const double quality = radius_ratio(mesh, e);
+    shapes.size += size(mesh, e);
+    shapes.worst = std::min(shapes.worst, quality);
+    shapes.mean += quality / static_cast<double>(count);
+  }
+  return shapes;
+}
+
 Json mesh_json(const TetMesh& mesh, Rows& rows) {
   const BoundingBox box = bounding_box(mesh.nodes);
-  double volume = 0, worst = 1, sum = 0;
-  for (Index e = 0; e < mesh.num_tets(); ++e) {
-    const double quality = radius_ratio(mesh, e);
-    volume += tet_volume(mesh, e);
-    worst = std::min(worst, quality);
-    sum += quality;
-  }
-  const double mean = sum / static_cast<double>(mesh.num_tets());
+  const auto [volume, worst, mean] = element_shapes(mesh, mesh.num_tets(), tet_volume);
   const Index components = connected_components(mesh).count,
               faces = static_cast<Index>(boundary_faces(mesh).size());
   const Hinges hinges = boundary_hinges(mesh);
@@ -82,14 +91,7 @@ Json mesh_json(const TetMesh& mesh, Rows& rows) {
 
 Json mesh_json(const TriangleMesh& mesh, Rows& rows) {
   const BoundingBox box = bounding_box(mesh.nodes);
-  double area = 0, worst = 1, sum = 0;
-  for (Index t = 0; t < mesh.num_triangles(); ++t) {
-    const double quality = radius_ratio(mesh, t);
-    area += triangle_area(mesh, t);
-    worst = std::min(worst, quality);
-    sum += quality;
-  }
-  const double mean = sum / static_cast<double>(mesh.num_triangles());
+  const auto [area, worst, mean] = element_shapes(mesh, mesh.num_triangles(), triangle_area);
   const Index components = connected_components(mesh).count,
               flaps = static_cast<Index>(interior_edges(mesh).size()),
               boundary = static_cast<Index>(boundary_edges(mesh).size());
@@ -183,7 +185,6 @@ void InfoCommand::run() const {
     report["format"] = named.notes.format;
     report.update(std::visit([&](const auto& mesh) { return mesh_json(mesh, rows); }, named.mesh));
     report["warnings"] = named.notes.warnings;
-    for (const std::string& warning : named.notes.warnings) warn(source + ": " + warning);
   }
   if (!is_stdout(json)) print_rows(stdout, source + ": " + kind, rows);
   write_json(json, report);
@@ -192,7 +193,6 @@ void InfoCommand::run() const {
 void MeshCommand::run() const {
   require_writable(output);
   const NamedMesh named = load_mesh(source);
-  for (const std::string& warning : named.notes.warnings) warn(source + ": " + warning);
   const ExitGuard guard;
   if (const auto* surface = std::get_if<TriangleMesh>(&named.mesh)) {
     write_vtu(output, surface->nodes, surface->triangles, {});

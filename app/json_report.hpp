@@ -1,6 +1,7 @@
 #pragma once
 /// \file Reports for machines, and the checks that spare a user a long wait before a file cannot be written.
 
+#include <core/stopwatch.hpp>
 #include <core/types.hpp>
 #include <sparse/selection.hpp>
 
@@ -25,6 +26,25 @@ Json json_numbers(VectorIn values);
 /// An entry for each iterate of a selector.
 Json json_history(const SelectionReport& report);
 Json json_seconds(const std::vector<std::pair<std::string, double>>& seconds, double total);
+
+/// The stages of a command and their times.
+class StageTimes {
+ public:
+  /// A stage that began when the last one ended ends now.
+  void finish(const char* stage) {
+    add(stage, watch_.seconds());
+    watch_.restart();
+  }
+  void add(const char* stage, double seconds) { seconds_.emplace_back(stage, seconds); }
+  double current() const { return watch_.seconds(); }  ///< of the stage that is going on [s]
+  void restart() { watch_.restart(); }
+  const std::vector<std::pair<std::string, double>>& seconds() const { return seconds_; }
+  double total() const { return total_.seconds(); }  ///< since the start [s]
+
+ private:
+  Stopwatch total_, watch_;
+  std::vector<std::pair<std::string, double>> seconds_;
+};
 
 /// \throws InputError if a file could not be created at this path; "-" and no path always pass.
 void require_writable(const std::filesystem::path& path);

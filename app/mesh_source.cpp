@@ -1,7 +1,9 @@
 #include <app/mesh_source.hpp>
+#include <app/terminal.hpp>
 #include <core/check.hpp>
 #include <io/builtin_meshes.hpp>
 #include <io/builtin_surfaces.hpp>
+#include <io/mesh_repairs.hpp>
 #include <io/mesh_reader.hpp>
 #include <io/surface_reader.hpp>
 
@@ -14,11 +16,8 @@ namespace supple {
 namespace {
 
 bool is_surface_file(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   constexpr std::array surfaces{".obj", ".off", ".ply", ".stl"};
-  return std::find(surfaces.begin(), surfaces.end(), extension) != surfaces.end();
+  return std::any_of(surfaces.begin(), surfaces.end(), [&](const char* known) { return has_extension(path, known); });
 }
 
 }  // namespace
@@ -45,6 +44,7 @@ NamedMesh load_mesh(const std::string& spec) {
     result.mesh = read_triangle_mesh(spec, &result.notes);
   else
     result.mesh = read_tet_mesh(spec, &result.notes);
+  for (const std::string& warning : result.notes.warnings) warn(spec + ": " + warning);
   return result;
 }
 

@@ -22,6 +22,7 @@ struct NamedMesh {
 
 /// A built-in such as "bar:80x20x10" or "sphere:16", or else a file: a surface by its extension (.obj, .off, .ply,
 /// .stl), anything else tetrahedra.
+/// Tells the terminal of the notes' warnings.
 NamedMesh load_mesh(const std::string& spec);
 
 }  // namespace supple

@@ -48,9 +48,7 @@ Pull along_mode(const S& subspace, const Vector& phi, double omega) {
 }  // namespace
 
 Scene pluck_scene(const ReducedModel& model) {
-  const ReducedModes modes = std::visit(
-      [&](const auto& subspace) { return reduced_modes(model.rest_stiffness, subspace->report.known_rigid_modes()); },
-      model.subspace);
+  const ReducedModes modes = reduced_modes(model);
   if (modes.num_zero == modes.omega.size()) throw SolverError("the model has no flexible mode to pluck");
   const double omega = modes.omega[modes.num_zero], period = 2 * std::numbers::pi / omega;
   const Vector mass = nodal_mass(model.body);

@@ -11,8 +11,7 @@ namespace {
 Matrix frames_of_trajectory(const std::filesystem::path& path, const Points& nodes) {
   const Trajectory trajectory = load_trajectory(path);
   const ReducedModel model = load_model_of(trajectory, path);
-  const Points& others = node_positions(model.body);
-  if (others.rows() != nodes.rows() || others != nodes)
+  if (!has_nodes(model.body, nodes))
     throw InputError(path.string() + ": the trajectory is of another mesh than the one to be reduced");
   std::vector<Index> deformed;
   for (Index f = 0; f < trajectory.num_frames(); ++f)

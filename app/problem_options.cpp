@@ -14,7 +14,7 @@ std::vector<Index> held_nodes(const ProblemOptions& problem, const NamedMesh& na
   const Points& nodes = named.nodes();
   std::set<Index> held;
   const auto fix = [&](const std::vector<Index>& some) { held.insert(some.begin(), some.end()); };
-  for (const std::string& rule : problem.fix) fix(select_nodes(nodes, rule));
+  fix(select_nodes(nodes, problem.fix));
   for (const std::string& box : problem.fix_box) fix(nodes_in_box(nodes, box));
   for (const std::string& region : problem.fix_region) {
     const auto* mesh = std::get_if<TetMesh>(&named.mesh);

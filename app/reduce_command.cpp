@@ -177,7 +177,6 @@ void ReduceCommand::run() const {
   const Stopwatch total;
   Stopwatch watch;
   const NamedMesh named = load_mesh(mesh);
-  for (const std::string& warning : named.notes.warnings) warn(mesh + ": " + warning);
   const Body body = load_body(*this, named);
   const ReduceOptions options = method(*this, named);
   if (!plots.empty()) make_folder(plots);

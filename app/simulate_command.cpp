@@ -20,8 +20,6 @@ namespace supple {
 
 namespace {
 
-using Seconds = std::vector<std::pair<std::string, double>>;
-
 /// The scene with the command line's word on top, and all that was left open decided.
 SimulationOptions decide(const SimulateCommand& command, const ReducedModel& model, Scene& scene) {
   if (command.time) scene.duration = option_quantity("--time", *command.time, "s");
@@ -216,27 +214,20 @@ void print_summary(const SimulateCommand& command, const Scene& scene, const Sim
 void SimulateCommand::run() const {
   set_num_threads(threads);
   require_writable(json);
-  const Stopwatch total;
-  Stopwatch watch;
-  Seconds seconds;
-  const auto finish = [&](const char* stage) {
-    seconds.emplace_back(stage, watch.seconds());
-    watch.restart();
-  };
+  StageTimes times;
   const ReducedModel reduced = load_model(model);
   Scene what = scene ? read_scene(*scene, reduced.body) : pluck_scene(reduced);
   const SimulationOptions options = decide(*this, reduced, what);
   if (!output.empty()) make_folder(output);
-  finish("read model");
+  times.finish("read model");
 
   const Progress progress = progress_bar();
   const Simulation result = full ? simulate_full(reduced.body, what, options, progress)
                                  : simulate_reduced(reduced, what, options, progress);
-  seconds.emplace_back("setup", result.setup_seconds);
-  seconds.emplace_back("time steps", result.integration_seconds);
-  seconds.emplace_back("energies and frames",
-                       watch.seconds() - result.setup_seconds - result.integration_seconds);
-  watch.restart();
+  times.add("setup", result.setup_seconds);
+  times.add("time steps", result.integration_seconds);
+  times.add("energies and frames", times.current() - result.setup_seconds - result.integration_seconds);
+  times.restart();
   const Effort effort(result);
   double reconstruction = 0;
   if (!output.empty()) {
@@ -252,17 +243,17 @@ void SimulateCommand::run() const {
       warn("gnuplot is not installed: there will be no energy.png");
     reconstruction = write_frames(
         output, frames, reduced, trajectory, [](double t) { return "t = " + shown(t, 3) + " s"; }, progress);
-    finish("results");
+    times.finish("results");
   }
   clear_progress();
   Json report = report_json(*this, what, options, result, effort);
   report["reconstruction_seconds"] = reconstruction;
-  report["seconds"] = json_seconds(seconds, total.seconds());
+  report["seconds"] = json_seconds(times.seconds(), times.total());
   report["peak_memory"] = peak_resident_memory();
   if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) {
     print_summary(*this, what, options, result, effort, reconstruction);
-    print_stages(stdout, seconds, total.seconds());
+    print_stages(stdout, times.seconds(), times.total());
   }
   write_json(json, report);
   if (!result.finite())

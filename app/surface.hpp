@@ -24,8 +24,9 @@ inline Eigen::Map<const Points> as_points(const Vector& u) {
   return {u.data(), u.size() / 3, 3};
 }
 
-/// The end of a scale that holds all scalars of the objects: their largest, rounded up to two digits.
-double scale_end(const std::vector<PictureObject>& objects);
+/// Draws and writes objects that are coloured by a length [m], on one scale from 0.
+void write_coloured_picture(const std::filesystem::path& path, const std::vector<PictureObject>& objects,
+                            const std::string& label, int width, int height);
 
 /// Draws and writes in one go. \see draw_picture
 void write_picture(const std::filesystem::path& path, const std::vector<PictureObject>& objects,

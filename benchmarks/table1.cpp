@@ -78,13 +78,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(cli, argc, argv);
 
   const TetMesh mesh = is_builtin(mesh_name) ? builtin_mesh(mesh_name) : read_tet_mesh(mesh_name);
-  std::vector<Index> fixed;
-  for (const std::string& rule : fix) {
-    const std::vector<Index> nodes = select_nodes(mesh.nodes, rule);
-    fixed.insert(fixed.end(), nodes.begin(), nodes.end());
-  }
-  std::sort(fixed.begin(), fixed.end());
-  fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
+  const std::vector<Index> fixed = select_nodes(mesh.nodes, fix);
   const Solid solid = isotropic_solid(mesh, {.young = 1e5, .poisson = 0.4}, fixed, law);
 
   ReduceOptions options = recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
@@ -140,8 +134,7 @@ int main(int argc, char** argv) {
                           {.name = "violent", .target = target},
                           {.name = "violent, ramped", .target = target, .ramp = 60},
                           {.name = "violent, damped", .target = target, .damping = 0.05}},
-                         reduced_modes(model.rest_stiffness, 
-                                       std::visit([](const auto& basis) { return basis->report.known_rigid_modes(); }, model.subspace)), diagonal, system);
+                         reduced_modes(model), diagonal, system);
     std::vector<PulledMotion> motions;
     for (std::size_t k = 0; k < pulls.scenes().size(); ++k) {  // one by one, for the times
       motions.push_back(pulls.move(system, k));

@@ -36,13 +36,7 @@ int main(int argc, char** argv) {
   set_num_threads(threads);
 
   const TetMesh mesh = is_builtin(mesh_name) ? builtin_mesh(mesh_name) : read_tet_mesh(mesh_name);
-  std::vector<Index> fixed;
-  for (const std::string& rule : fix) {
-    const std::vector<Index> nodes = select_nodes(mesh.nodes, rule);
-    fixed.insert(fixed.end(), nodes.begin(), nodes.end());
-  }
-  std::sort(fixed.begin(), fixed.end());
-  fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
+  const std::vector<Index> fixed = select_nodes(mesh.nodes, fix);
   const Solid solid = isotropic_solid(mesh, {.young = 1e5, .poisson = 0.4}, fixed, law);
 
   nlohmann::json out{

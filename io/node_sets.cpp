@@ -64,6 +64,13 @@ std::vector<Index> select_nodes(const Points& nodes, std::string_view rule) {
   });
 }
 
+std::vector<Index> select_nodes(const Points& nodes, const std::vector<std::string>& rules) {
+  std::set<Index> selected;
+  for (const std::string& rule : rules)
+    for (const Index v : select_nodes(nodes, rule)) selected.insert(v);
+  return {selected.begin(), selected.end()};
+}
+
 std::vector<Index> nodes_in_box(const Points& nodes, std::string_view box) {
   const std::string expectation = "expected xmin,ymin,zmin:xmax,ymax,zmax";
   std::array<double, 6> bounds;

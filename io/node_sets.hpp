@@ -4,6 +4,7 @@
 #include <physics/tet_mesh.hpp>
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace supple {
 /// \return ascending node indices, at least one.
 /// \throws InputError naming the rule if it has another form or selects no node.
 std::vector<Index> select_nodes(const Points& nodes, std::string_view rule);
+
+/// Nodes that at least one of the rules selects, ascending; none for no rules.
+std::vector<Index> select_nodes(const Points& nodes, const std::vector<std::string>& rules);
 
 /// Nodes in a closed box between two corners [m]: "xmin,ymin,zmin:xmax,ymax,zmax".
 /// \throws InputError as above, and if a lower bound is above its upper bound.

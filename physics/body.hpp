@@ -28,6 +28,12 @@ inline Vector nodal_mass(const Body& body) {  ///< n [kg]
   return std::visit([](const auto& b) { return b.nodal_mass(); }, body);
 }
 
+/// Whether an object has exactly these nodes at rest.
+inline bool has_nodes(const Body& body, const Points& nodes) {
+  const Points& own = node_positions(body);
+  return own.rows() == nodes.rows() && own == nodes;
+}
+
 /// What the terms of its force model are called: "tets" or "flaps".
 inline std::string_view component_name(const Body& body) {
   return std::holds_alternative<Solid>(body) ? "tets" : "flaps";

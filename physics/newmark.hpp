@@ -201,17 +201,13 @@ class Newmark {
 
   /// The solver starts from the Jacobian at rest, and again when the springs of the load have changed.
   void prepare_rest_jacobian(const AffineLoad<MatrixType>& load) {
-    if (prepared_ && same(load.stiffness, prepared_stiffness_)) return;
+    if (prepared_ && equal(load.stiffness, prepared_stiffness_)) return;
     MatrixType H;
     system_.stiffness(Vector::Zero(system_.dim()), H);
     step_.complete(H, load.stiffness);
     if (!solver_.factorize(H)) throw SolverError("the system matrix at rest is not positive definite");
     prepared_stiffness_ = load.stiffness;
     prepared_ = true;
-  }
-  static bool same(const Matrix& A, const Matrix& B) { return A.size() == B.size() && A == B; }
-  static bool same(const SparseMatrix& A, const SparseMatrix& B) {
-    return A.size() == B.size() && (A.size() == 0 || (A - B).norm() == 0);
   }
 
   const System& system_;

@@ -52,6 +52,14 @@ class SpdSolver<Matrix> {
   Matrix inverse_;
 };
 
+/// Whether two matrices are equal, one without entries to itself only.
+inline bool equal(const Matrix& A, const Matrix& B) {
+  return A.size() == B.size() && A == B;
+}
+inline bool equal(const SparseMatrix& A, const SparseMatrix& B) {
+  return A.size() == B.size() && (A.size() == 0 || (A - B).norm() == 0);
+}
+
 /// A += s B; B has the pattern of A.
 inline void add_scaled(Matrix& A, double s, const Matrix& B) {
   A += s * B;

@@ -49,7 +49,7 @@ class StaticSolver {
       prepared_ = false;
       return {newton, newton.iterations};
     }
-    if (!prepared_ || !same(load.stiffness, prepared_stiffness_)) prepare(objective);
+    if (!prepared_ || !equal(load.stiffness, prepared_stiffness_)) prepare(objective);
     if (options_.method == StaticMethod::Bfgs) {
       const BfgsReport bfgs = bfgs_minimize(objective, solver_, u,
                                             {.tolerance = options_.tolerance,
@@ -85,11 +85,6 @@ class StaticSolver {
                                .max_evaluations = 20 * options_.max_iterations},
                               factor_),
             0};
-  }
-
-  static bool same(const Matrix& A, const Matrix& B) { return A.size() == B.size() && A == B; }
-  static bool same(const SparseMatrix& A, const SparseMatrix& B) {
-    return A.size() == B.size() && (A.size() == 0 || (A - B).norm() == 0);
   }
 
   const System& system_;

@@ -128,6 +128,12 @@ Shell read_shell(const ModelReader& in, Points nodes) {
 
 }  // namespace
 
+ReducedModes reduced_modes(const ReducedModel& model) {
+  return std::visit(
+      [&](const auto& basis) { return reduced_modes(model.rest_stiffness, basis->report.known_rigid_modes()); },
+      model.subspace);
+}
+
 void save_model(const std::filesystem::path& path, const ReducedModel& model) {
   TensorFileWriter file;
   file.metadata = {{"format", format_name}, {"format_version", format_version}, {"material.law", std::string(law(model.body))}, {"subspace.name", model.subspace_name}};

@@ -29,6 +29,9 @@ struct ReducedModel {
   }
 };
 
+/// Vibration modes of a model, of its exact stiffness at rest.
+ReducedModes reduced_modes(const ReducedModel& model);
+
 /// Calls visit(system) with the ReducedSystem of the model; the system lives during the call.
 template <typename Visitor>
 decltype(auto) with_reduced_system(const ReducedModel& model, Visitor&& visit) {

@@ -143,6 +143,16 @@ TEST_F(EditCommandTest, ComparesSubspacesByTheirShapes) {
             (report["shapes"][0]["elastic_energy"].get<double>() + report["shapes"][0]["control_energy"].get<double>()) * (1 - 1e-6));
   EXPECT_GT(read_png(folder / "fidelity/shapes.png").width, 1000);
   EXPECT_THAT(read("fidelity/table.md"), HasSubstr("| derivatives |"));
+
+  reduce();
+  ASSERT_EQ(supple({"edit", "bar.supple", "--scene", "bend.json", "-o", "bent"}).exit_code, 0);
+  const json own = this->report({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--modes", "10", "--subspaces", "pca",
+                                 "--snapshots", "bent"});
+  ASSERT_EQ(own["shapes"].size(), 2u);
+  EXPECT_EQ(own["shapes"][1]["space"], "pca");
+  EXPECT_LT(own["shapes"][1]["rms_over_diagonal"], 0.1);
+  expect_refusal({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--subspaces", "pca"}, {"--snapshots"});
+  expect_refusal({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--snapshots", "bent"}, {"pca"});
 }
 
 }  // namespace
