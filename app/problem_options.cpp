@@ -77,7 +77,7 @@ void set_materials(const ProblemOptions& problem, Solid& solid) {
   }
   solid.law = problem.law;
   for (std::size_t k = 0; k < materials.size(); ++k) {
-    const std::vector<double> row = law_parameters(problem.law, materials[k].moduli);
+    const std::vector<double> row = material_law(problem.law).values(materials[k].moduli);
     solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
     for (std::size_t j = 0; j < row.size(); ++j) solid.parameters(k, j) = row[j];
   }

@@ -9,7 +9,7 @@
 #include <io/mesh_reader.hpp>
 #include <io/node_sets.hpp>
 #include <physics/full_system.hpp>
-#include <physics/solid.hpp>
+#include <physics/body.hpp>
 #include <reduction/modal_derivatives.hpp>
 #include <reduction/skinning_modes.hpp>
 
@@ -41,8 +41,8 @@ int main(int argc, char** argv) {
 
   nlohmann::json out{
       {"mesh", mesh_name}, {"nodes", mesh.num_nodes()}, {"tets", mesh.num_tets()}, {"r", num_modes}};
-  with_law(law, [&]<template <typename> class Material>() {
-    const FullSystem<TetElasticity<Material>> system(make_model<Material>(solid), solid.nodal_mass(), fixed);
+  with_force_model(solid, [&]<typename Model>(const std::shared_ptr<const Model>& model) {
+    const FullSystem<Model> system(model, solid.nodal_mass(), fixed);
     const RestState object = rest_state(system);
     const Index rigid =
         find_free_components(object.stencils, object.stencil_size, object.numbering).num_rigid_modes();

@@ -29,7 +29,7 @@ Vector sag(const System& system) {
 int main() {
   const TetMesh mesh = builtin_mesh("bar:18x6x6");
   Solid solid = isotropic_solid(mesh, {.young = 8e4, .poisson = 0.4}, select_nodes(mesh.nodes, "x<1%"));
-  const std::vector<double> soft = law_parameters("stvk", {.young = 1e4, .poisson = 0.4});
+  const std::vector<double> soft = material_law("stvk").values({.young = 1e4, .poisson = 0.4});
   solid.parameters.conservativeResize(2, Eigen::NoChange);
   solid.parameters.row(1) =
       Eigen::Map<const Eigen::RowVectorXd>(soft.data(), static_cast<Index>(soft.size()));

@@ -39,10 +39,11 @@ inline std::string_view component_name(const Body& body) {
   return std::holds_alternative<Solid>(body) ? "tets" : "flaps";
 }
 
-/// The law of its material: one of material_laws(), or "discrete-shell".
+inline constexpr std::string_view shell_law = "discrete-shell";
+/// The law of its material: one of material_laws(), or shell_law.
 inline std::string_view law(const Body& body) {
   const Solid* solid = std::get_if<Solid>(&body);
-  return solid ? std::string_view(solid->law) : "discrete-shell";
+  return solid ? std::string_view(solid->law) : shell_law;
 }
 
 /// Calls visit(model) with a shared pointer to its force model.
@@ -50,11 +51,9 @@ inline std::string_view law(const Body& body) {
 template <typename Visitor>
 decltype(auto) with_force_model(const Body& body, Visitor&& visit) {
   if (const Shell* shell = std::get_if<Shell>(&body))
-    return visit(std::make_shared<const DiscreteShell>(shell->mesh, shell->materials));
+    return visit(std::make_shared<const AnyModel<4>>(std::make_shared<const DiscreteShell>(shell->mesh, shell->materials)));
   const Solid& solid = std::get<Solid>(body);
-  return with_law(solid.law, [&]<template <typename> class Material>() -> decltype(auto) {
-    return visit(std::make_shared<const TetElasticity<Material>>(make_model<Material>(solid)));
-  });
+  return visit(material_law(solid.law).tets(solid.mesh, solid.parameters, solid.material_of_tet));
 }
 
 }  // namespace supple

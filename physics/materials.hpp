@@ -1,26 +1,28 @@
 #pragma once
 /// \file Hyperelastic materials: energy densities ψ(F) of the deformation gradient F = I + ∇u.
 ///
-/// A material is an aggregate of its parameters over a scalar type Real (a number, a pack of numbers) with
-///   energy(F) = ψ [J/m³],  stress(F) = P = ∂ψ/∂F [Pa] (first Piola–Kirchhoff),  tangent(F) = ∂P/∂F [Pa], 9 ×
-///   9 over
-/// vec(F) by columns.
+/// A material is a class template over a scalar type Real (a number, a pack of numbers, a recorded number), an
+/// aggregate of its parameters, with
+///   energy(F) = ψ [J/m³], and, where they are worth writing by hand,
+///   stress(F) = P = ∂ψ/∂F [Pa] (first Piola–Kirchhoff),
+///   tangent(F) = ∂P/∂F [Pa], 9 × 9 over vec(F) by columns.
+/// What is not there is derived, see material_response.hpp. docs/materials.md grows one from the energy alone.
 
 #include <core/check.hpp>
 #include <core/pack.hpp>
 #include <core/types.hpp>
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <limits>
 
 namespace supple {
 
+/// What every material has.
 template <typename Material, typename Real>
 concept MaterialOver = requires(const Material& material, const Matrix3<Real>& F) {
   { material.energy(F) } -> std::convertible_to<Real>;
-  { material.stress(F) } -> std::convertible_to<Matrix3<Real>>;
-  { material.tangent(F) } -> std::convertible_to<Matrix9<Real>>;
 };
 
 template <typename Real>
@@ -28,6 +30,18 @@ Real determinant(const Matrix3<Real>& F) {
   return F(0, 0) * (F(1, 1) * F(2, 2) - F(1, 2) * F(2, 1)) +
          F(0, 1) * (F(1, 2) * F(2, 0) - F(1, 0) * F(2, 2)) +
          F(0, 2) * (F(1, 0) * F(2, 1) - F(1, 1) * F(2, 0));
+}
+
+/// cof F = ∂ det F / ∂F = J F⁻ᵀ.
+template <typename Real>
+Matrix3<Real> cofactor(const Matrix3<Real>& F) {
+  Matrix3<Real> cof;
+  for (int i = 0; i < 3; ++i)
+    for (int K = 0; K < 3; ++K) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, K1 = (K + 1) % 3, K2 = (K + 2) % 3;
+      cof(i, K) = F(i1, K1) * F(i2, K2) - F(i1, K2) * F(i2, K1);
+    }
+  return cof;
 }
 
 /// Young's modulus [Pa] and Poisson's ratio: the linear behaviour at rest, common to all isotropic materials
@@ -48,6 +62,7 @@ struct IsotropicModuli {
 template <typename Real = double>
 struct StVenantKirchhoff {
   Real lambda, mu;  ///< Lamé's parameters [Pa]
+  static constexpr std::array parameter_names{"lambda", "mu"};
 
   /// \throws std::invalid_argument as m.check().
   static StVenantKirchhoff from(const IsotropicModuli& m) {
@@ -99,6 +114,7 @@ template <typename Real = double>
 struct MooneyRivlin {
   Real c10, c01;  ///< [Pa]
   Real bulk;      ///< κ [Pa]
+  static constexpr std::array parameter_names{"c10", "c01", "bulk"};
 
   /// The constants that agree with `m` at rest; share = c₀₁ / (c₁₀ + c₀₁) in [0, 1].
   /// \throws std::invalid_argument as m.check(), and for another share.
@@ -171,11 +187,7 @@ struct MooneyRivlin {
     Matrix3<Real> dJ, dI1, dI2;
 
     explicit Kinematics(const Matrix3<Real>& F) {
-      for (int i = 0; i < 3; ++i)
-        for (int K = 0; K < 3; ++K) {
-          const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, K1 = (K + 1) % 3, K2 = (K + 2) % 3;
-          dJ(i, K) = F(i1, K1) * F(i2, K2) - F(i1, K2) * F(i2, K1);
-        }
+      dJ = cofactor(F);
       J = F(0, 0) * dJ(0, 0) + F(0, 1) * dJ(0, 1) + F(0, 2) * dJ(0, 2);
       const Matrix3<Real> C = F.transpose() * F;
       I1 = C.trace();

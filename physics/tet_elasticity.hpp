@@ -2,7 +2,7 @@
 /// \file Elastic solids of linear tetrahedra.
 
 #include <core/check.hpp>
-#include <physics/materials.hpp>
+#include <physics/material_response.hpp>
 #include <physics/term_pack.hpp>
 #include <physics/tet_mesh.hpp>
 
@@ -35,7 +35,7 @@ class TetElasticity {
     Real energy(const Local<12, Real>& u) const { return volume * material.energy(gradient(u)); }
 
     Local<12, Real> force(const Local<12, Real>& u) const {
-      const Matrix3<Real> corners = material.stress(gradient(u)) * gradients().transpose() * volume;
+      const Matrix3<Real> corners = stress(material, gradient(u)) * gradients().transpose() * volume;
       Local<12, Real> f;
       for (int i = 0; i < 3; ++i) {
         f[i] = -(corners(i, 0) + corners(i, 1) + corners(i, 2));
@@ -45,7 +45,7 @@ class TetElasticity {
     }
 
     LocalMatrix<12, Real> stiffness(const Local<12, Real>& u) const {
-      const Matrix9<Real> C = material.tangent(gradient(u));
+      const Matrix9<Real> C = tangent(material, gradient(u));
       const Matrix3<Real> g = gradients();
       Matrix9<Real> half;  // Σ_L C_iJkL g_bL over (iJ, kb), times the volume
       for (int b = 0; b < 3; ++b)

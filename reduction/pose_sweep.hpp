@@ -122,6 +122,8 @@ std::vector<Index> count_inverted(const std::shared_ptr<const Model>& model, con
   if constexpr (requires(const TermPack<Model>& terms, const Local<Model::local_dofs, Pack>& u) {
                   terms.jacobian(u);
                 }) {
+    if constexpr (requires { model->has_jacobian(); })
+      if (!model->has_jacobian()) return inverted;
     const RowMatrix packed = pack_poses<S::block>(Q);
     parallel_for((Q.cols() + Pack::size - 1) / Pack::size, [&](Index pack) {
       AlignedBuffer u(subspace.full_dim() * Pack::size);

@@ -56,7 +56,7 @@ void check(const ReduceOptions& options) {
 }
 
 InvertedPoses inverted_rule(std::string_view law, std::optional<InvertedPoses> asked) {
-  const bool finite_energy = law != "mooney-rivlin";
+  const bool finite_energy = law == shell_law || material_law(law).finite_when_inverted;
   require(finite_energy || asked != InvertedPoses::Keep,
           "poses with inverted tets cannot be kept: the energy of " + std::string(law) +
               " is infinite there; expected shrink or redraw");

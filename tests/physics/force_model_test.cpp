@@ -1,3 +1,7 @@
+#include <physics/corotational.hpp>
+#include <physics/fung.hpp>
+#include <physics/neo_hookean.hpp>
+#include <physics/ogden.hpp>
 #include <tests/conformance/force_model_conformance.hpp>
 #include <tests/support/force_models.hpp>
 
@@ -5,6 +9,11 @@ namespace supple::test {
 
 INSTANTIATE_TYPED_TEST_SUITE_P(StVenantKirchhoffTets, ForceModelConformance, TetBar<StVenantKirchhoff>);
 INSTANTIATE_TYPED_TEST_SUITE_P(MooneyRivlinTets, ForceModelConformance, TetBar<MooneyRivlin>);
+INSTANTIATE_TYPED_TEST_SUITE_P(NeoHookeanTets, ForceModelConformance, TetBar<NeoHookean>);
+INSTANTIATE_TYPED_TEST_SUITE_P(StableNeoHookeanTets, ForceModelConformance, TetBar<StableNeoHookean>);
+INSTANTIATE_TYPED_TEST_SUITE_P(CorotationalTets, ForceModelConformance, TetBar<Corotational>);
+INSTANTIATE_TYPED_TEST_SUITE_P(OgdenTets, ForceModelConformance, TetBar<Ogden>);
+INSTANTIATE_TYPED_TEST_SUITE_P(FungTets, ForceModelConformance, TetBar<Fung>);
 INSTANTIATE_TYPED_TEST_SUITE_P(FlatShell, ForceModelConformance, FlatShell);
 INSTANTIATE_TYPED_TEST_SUITE_P(ClosedShell, ForceModelConformance, ClosedShell);
 INSTANTIATE_TYPED_TEST_SUITE_P(CurvedShell, ForceModelConformance, CurvedShell);

@@ -17,7 +17,7 @@ Solid bar_solid(const std::string& law = "stvk", bool held = true) {
   Solid solid;
   solid.mesh = bar_mesh();
   solid.law = law;
-  const std::vector<double> parameters = law_parameters(law, {.young = 1e5, .poisson = 0.35});
+  const std::vector<double> parameters = material_law(law).values({.young = 1e5, .poisson = 0.35});
   solid.parameters =
       Eigen::Map<const Eigen::RowVectorXd>(parameters.data(), static_cast<Index>(parameters.size()));
   if (held) solid.fixed_nodes = bar_end(solid.mesh);

@@ -1,0 +1,96 @@
+#pragma once
+/// \file Material laws by name: what commands, files and plug-ins choose from.
+
+#include <physics/any_model.hpp>
+#include <physics/tet_elasticity.hpp>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace supple {
+
+/// A material law of solids, its type erased.
+struct MaterialLaw {
+  using Named = std::map<std::string, double>;
+
+  std::string name;
+  std::vector<std::string> parameters;  ///< names, in the order of the material's members
+  bool finite_when_inverted = true;     ///< whether the energy of an inverted element is finite
+
+  /// Values of the parameters that agree at rest with the moduli.
+  std::function<std::vector<double>(const IsotropicModuli&)> from;
+  /// The model of a mesh. \param materials  one row a material.  \param of_tet  the row of each tet; empty: the first.
+  std::function<std::shared_ptr<const AnyModel<4>>(const TetMesh& mesh, const RowMatrix& materials,
+                                                   const std::vector<std::int32_t>& of_tet)>
+      tets;
+
+  /// Those that agree with the moduli, with some replaced by name.
+  /// \throws std::invalid_argument for a name that the law does not have, and as from().
+  std::vector<double> values(const IsotropicModuli& moduli, const Named& replaced = {}) const;
+};
+
+/// A law by name. \throws std::invalid_argument naming those that there are.
+const MaterialLaw& material_law(std::string_view name);
+/// Names: "stvk", "mooney-rivlin", "neo-hookean", "stable-neo-hookean", "corotational", "ogden", "fung" and what was added.
+std::vector<std::string> material_laws();
+/// Adds a law for this process. \throws std::invalid_argument if there is one of this name.
+void add_material_law(MaterialLaw law);
+
+/// One material a tet, or one for all, of rows of parameters.
+/// \throws std::invalid_argument for another number of parameters and a row that does not exist.
+template <template <typename> class Material>
+std::vector<Material<double>> materials_of_tets(Index num_tets, const RowMatrix& rows,
+                                                const std::vector<std::int32_t>& of_tet) {
+  constexpr std::size_t num_parameters = num_material_parameters<Material>;
+  require_size("parameters of the material", rows.cols(), static_cast<Index>(num_parameters));
+  std::vector<Material<double>> materials;
+  for (Index k = 0; k < rows.rows(); ++k) {
+    std::array<double, num_parameters> values;
+    for (std::size_t j = 0; j < num_parameters; ++j) values[j] = rows(k, static_cast<Index>(j));
+    materials.push_back(material_of<Material>(values));
+  }
+  if (of_tet.empty()) {
+    require_size("number of materials", rows.rows(), 1);
+    return materials;
+  }
+  require_size("material of each tet", static_cast<Index>(of_tet.size()), num_tets);
+  std::vector<Material<double>> result;
+  result.reserve(of_tet.size());
+  for (const std::int32_t k : of_tet) {
+    require(k >= 0 && k < rows.rows(), "material " + std::to_string(k) + " does not exist, expected 0 to " +
+                                           std::to_string(rows.rows() - 1));
+    result.push_back(materials[k]);
+  }
+  return result;
+}
+
+/// The law of a material. `Material` says, beside its formulas (see materials.hpp), the names of its parameters,
+/// `static constexpr std::array parameter_names{"mu", …}`, and how they follow from moduli, `static Material
+/// from(const IsotropicModuli&)`.
+template <template <typename> class Material>
+MaterialLaw make_material_law(std::string name) {
+  constexpr auto& names = Material<double>::parameter_names;
+  static_assert(std::size(names) == num_material_parameters<Material>, "parameter_names must name every member");
+  const Matrix3<double> inverted = Point(-0.5, 1, 1).asDiagonal();
+  return {
+      .name = std::move(name),
+      .parameters = {names.begin(), names.end()},
+      .finite_when_inverted = std::isfinite(Material<double>::from(IsotropicModuli{}).energy(inverted)),
+      .from =
+          [](const IsotropicModuli& moduli) {
+            const auto values = parameters_of(Material<double>::from(moduli));
+            return std::vector<double>(values.begin(), values.end());
+          },
+      .tets =
+          [](const TetMesh& mesh, const RowMatrix& materials, const std::vector<std::int32_t>& of_tet) {
+            return std::make_shared<const AnyModel<4>>(std::make_shared<const TetElasticity<Material>>(
+                mesh, materials_of_tets<Material>(mesh.num_tets(), materials, of_tet)));
+          },
+  };
+}
+
+}  // namespace supple
