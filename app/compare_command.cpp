@@ -4,6 +4,7 @@
 #include <app/surface.hpp>
 #include <app/terminal.hpp>
 #include <app/trajectory.hpp>
+#include <core/version.hpp>
 #include <core/check.hpp>
 #include <core/parallel.hpp>
 #include <io/csv.hpp>

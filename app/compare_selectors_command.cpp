@@ -3,6 +3,7 @@
 #include <app/mesh_source.hpp>
 #include <app/selector_table.hpp>
 #include <app/terminal.hpp>
+#include <core/version.hpp>
 #include <core/output_file.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
@@ -53,7 +54,7 @@ void CompareSelectorsCommand::run() const {
       throw InputError("--sizes holds " + std::to_string(size) + ", expected 1 to the number of " +
                        std::string(component_name(body)) + ", " + std::to_string(m));
   if (!output.empty()) make_folder(output);
-  const ReduceOptions options = reduce_options(*this, named);
+  const ReduceOptions options = reduce_options(*this, named, body);
   std::vector<PullScene> scenes;
   if (trajectories)
     scenes = {{.name = "pull"}, {.name = "ramped pull", .ramp = 60}, {.name = "damped pull", .damping = 0.05}};

@@ -4,6 +4,7 @@
 #include <app/frames.hpp>
 #include <app/json_report.hpp>
 #include <app/terminal.hpp>
+#include <core/version.hpp>
 #include <core/check.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>

@@ -4,6 +4,7 @@
 #include <app/json_report.hpp>
 #include <app/surface.hpp>
 #include <app/terminal.hpp>
+#include <core/version.hpp>
 #include <core/check.hpp>
 #include <core/output_file.hpp>
 #include <core/parallel.hpp>
@@ -102,7 +103,7 @@ void FidelityCommand::run() const {
   const EditScene edits = read_edit_scene(scene, body);
   ProblemOptions problem = *this;
   problem.subspace = std::find(subspaces.begin(), subspaces.end(), "pca") != subspaces.end() ? "pca" : "extended";
-  const ReduceOptions options = reduce_options(problem, named);  // its subspace says whether there are snapshots
+  const ReduceOptions options = reduce_options(problem, named, body);  // its subspace says whether there are snapshots
   if (!output.empty()) make_folder(output);
   const Progress progress = progress_bar();
   const Points& rest = node_positions(body);

@@ -3,6 +3,7 @@
 #include <app/json_report.hpp>
 #include <app/mesh_source.hpp>
 #include <app/terminal.hpp>
+#include <core/version.hpp>
 #include <core/check.hpp>
 #include <io/builtin_meshes.hpp>
 #include <io/builtin_surfaces.hpp>

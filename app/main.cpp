@@ -8,16 +8,18 @@
 #include <app/select_command.hpp>
 #include <app/simulate_command.hpp>
 #include <app/terminal.hpp>
+#include <core/version.hpp>
 #include <core/check.hpp>
 #include <io/builtin_meshes.hpp>
 #include <io/builtin_surfaces.hpp>
 #include <io/json_fields.hpp>
-#include <physics/solid.hpp>
+#include <physics/plugin.hpp>
 #include <reduction/named_subspace.hpp>
 #include <sparse/selector_library.hpp>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <new>
 #include <optional>
 
@@ -36,15 +38,40 @@ void add_threads(CLI::App& app, int& threads) {
       ->check(CLI::Range(0, 4096));
 }
 
+/// Plug-ins are loaded while the line is read, before anything asks for what they add.
+void add_plugins(CLI::App& app) {
+  app.add_option_function<std::vector<std::string>>(
+         "--plugin", [](const std::vector<std::string>& files) { std::ranges::for_each(files, load_plugin); },
+         "Shared library with materials of your own, see docs/materials.md; may be repeated")
+      ->type_name("FILE.so")
+      ->expected(1)
+      ->take_all();
+}
+
+/// Of every law the names of its parameters.
+std::string material_help() {
+  std::string text = "Material laws and their parameters:\n";
+  for (const std::string& name : material_laws()) {
+    text += "  " + name + ":";
+    for (const std::string& parameter : material_law(name).parameters) text += " " + parameter;
+    text += "\n";
+  }
+  return text;
+}
+
 /// The object and the method of training, for all commands that pose a fitting problem.
 void add_problem(CLI::App& command, ProblemOptions& c) {
   command
       .add_option("MESH", c.mesh, "Tets (.msh .mesh .node .ele .veg .vtk .vtu), a surface (.obj .off .ply .stl), or a built-in, see below")
       ->required();
+  add_plugins(command);
   const auto object = "Object";
-  command.add_option("--material", c.law, "Law: stvk or mooney-rivlin")
-      ->capture_default_str()
-      ->check(CLI::IsMember(material_laws()))
+  command.add_option("--material", c.law, "Law, see below")->capture_default_str()->type_name("LAW")->group(object);
+  command
+      .add_option("--parameter", c.parameters, "Of the law, instead of what modulus and ratio give; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->take_all()
       ->group(object);
   command.add_option("--young", c.young, "Young's modulus [Pa], or with a unit: '2 MPa'")
       ->capture_default_str()
@@ -57,7 +84,8 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
   command.add_option("--density", c.density, "Density [kg/m^3]")->capture_default_str()->group(object);
   command
       .add_option("--materials", c.materials,
-                  "Other values for regions: {\"regions\": {\"bone\": {\"young\": \"1 MPa\"}}}")
+                  "Law, parameters, and other values for regions: {\"law\": \"ogden\", \"regions\": {\"bone\": "
+                  "{\"young\": \"1 MPa\"}}}")
       ->type_name("FILE.json")
       ->group(object);
   command.add_option("--damping-alpha", c.damping_alpha, "Rayleigh damping, share of the mass [1/s]")
@@ -155,7 +183,7 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
       ->check(CLI::IsMember(known_selectors()))
       ->group(method);
   add_threads(reduce, c.threads);
-  reduce.footer("Built-in meshes:\n" + std::string(builtin_mesh_help) + std::string(builtin_surface_help) +
+  reduce.footer(material_help() + "\nBuilt-in meshes:\n" + std::string(builtin_mesh_help) + std::string(builtin_surface_help) +
                 "\nExamples:\n"
                 "supple reduce dragon.msh -o dragon.supple --fix 'y<4%' --points 150\n"
                 "supple reduce octopus -o octopus.supple --fix 'y<4%' --picture octopus.png --json -");
@@ -192,6 +220,7 @@ CLI::App& add_simulate(CLI::App& app, SimulateCommand& c) {
       ->expected(1)
       ->take_all();
   add_json(simulate, c.json);
+  add_plugins(simulate);
   add_threads(simulate, c.threads);
   simulate.footer(
       "Examples:\n"
@@ -338,6 +367,7 @@ CLI::App& add_edit(CLI::App& app, EditCommand& c) {
   edit.add_option("-o,--output", c.output, "Folder for picture.png, series.pvd, solves.csv, trajectory and report")
       ->type_name("DIR");
   add_json(edit, c.json);
+  add_plugins(edit);
   add_threads(edit, c.threads);
   edit.footer("Example:\nsupple edit cactus.supple --scene bend.json -o bent");
   return edit;
@@ -364,6 +394,7 @@ CLI::App& add_info(CLI::App& app, InfoCommand& c) {
   CLI::App& info = *app.add_subcommand("info", "Say what a model or a mesh holds");
   info.add_option("SOURCE", c.source, "Model, mesh file or built-in mesh")->required();
   add_json(info, c.json);
+  add_plugins(info);
   return info;
 }
 

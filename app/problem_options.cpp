@@ -35,49 +35,76 @@ RayleighDamping read_damping(const ProblemOptions& problem) {
 struct Material {
   IsotropicModuli moduli;
   double density = 0;
+  MaterialLaw::Named parameters = {};  // instead of what the moduli give
 };
 
-Material base_material(const ProblemOptions& problem) {
-  return {{option_quantity("--young", problem.young, "Pa"), option_quantity("--poisson", problem.poisson, "1")},
-          option_quantity("--density", problem.density, "kg/m^3")};
+/// "mu=2e4"
+std::pair<std::string, double> named_value(const std::string& text) {
+  const std::size_t at = text.find('=');
+  if (at == std::string::npos || at == 0)
+    throw InputError("--parameter '" + text + "' is not of the form NAME=VALUE, such as mu=2e4");
+  return {text.substr(0, at), option_quantity("--parameter " + text.substr(0, at), text.substr(at + 1), "1")};
 }
 
-/// One material for the object, and others for the regions that the file of --materials names.
+Material base_material(const ProblemOptions& problem) {
+  Material result{{option_quantity("--young", problem.young, "Pa"), option_quantity("--poisson", problem.poisson, "1")},
+                  option_quantity("--density", problem.density, "kg/m^3")};
+  for (const std::string& text : problem.parameters) {
+    const auto [name, value] = named_value(text);
+    if (!result.parameters.emplace(name, value).second) throw InputError("--parameter " + name + " is given twice");
+  }
+  return result;
+}
+
+/// What the fields of a file change of a material.
+Material read_material(const JsonFields& fields, const MaterialLaw& law, Material material) {
+  material.moduli.young = fields.number_or("young", material.moduli.young, positive, "Pa");
+  material.moduli.poisson = fields.number_or("poisson", material.moduli.poisson, between(-1, 0.5));
+  material.density = fields.number_or("density", material.density, positive, "kg/m^3");
+  if (const auto parameters = fields.object_if("parameters"))
+    for (const std::string& name : law.parameters)
+      if (parameters->contains(name)) material.parameters[name] = parameters->number(name);
+  return material;
+}
+
+/// A law and one material for the object, and others for the regions that the file of --materials names.
 void set_materials(const ProblemOptions& problem, Solid& solid) {
-  const Material base = base_material(problem);
-  std::vector<Material> materials{base};
+  std::vector<Material> materials{base_material(problem)};
   const TetMesh& mesh = solid.mesh;
+  solid.law = problem.law;
   if (problem.materials) {
-    if (mesh.region.empty())
-      throw InputError(problem.materials->string() +
-                       ": the mesh has no regions, so there is nothing to tell apart");
-    const JsonFields file = JsonFields::read(*problem.materials), regions = file.object("regions");
-    std::map<int, std::int32_t> material_of_region;
-    for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end())) {
-      material_of_region[tag] = 0;
-      const auto name = mesh.region_names.find(tag);
-      for (const std::string& key :
-           {name == mesh.region_names.end() ? "" : name->second, std::to_string(tag)})
-        if (!key.empty() && regions.contains(key)) {
-          const JsonFields fields = regions.object(key);
-          material_of_region[tag] = static_cast<std::int32_t>(materials.size());
-          materials.push_back({{fields.number_or("young", base.moduli.young, positive, "Pa"),
-                                fields.number_or("poisson", base.moduli.poisson, between(-1, 0.5))},
-                               fields.number_or("density", base.density, positive, "kg/m^3")});
-          break;
-        }
+    const JsonFields file = JsonFields::read(*problem.materials);
+    solid.law = file.text_or("law", problem.law);
+    const MaterialLaw& law = material_law(solid.law);
+    const Material base = materials[0] = read_material(file, law, materials[0]);
+    if (const auto regions = file.object_if("regions")) {
+      if (mesh.region.empty())
+        throw InputError(problem.materials->string() +
+                         ": the mesh has no regions, so there is nothing to tell apart");
+      std::map<int, std::int32_t> material_of_region;
+      for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end())) {
+        material_of_region[tag] = 0;
+        const auto name = mesh.region_names.find(tag);
+        for (const std::string& key :
+             {name == mesh.region_names.end() ? "" : name->second, std::to_string(tag)})
+          if (!key.empty() && regions->contains(key)) {
+            material_of_region[tag] = static_cast<std::int32_t>(materials.size());
+            materials.push_back(read_material(regions->object(key), law, base));
+            break;
+          }
+      }
+      for (const int tag : mesh.region) solid.material_of_tet.push_back(material_of_region[tag]);
     }
     file.finish();
-    for (const int tag : mesh.region) solid.material_of_tet.push_back(material_of_region[tag]);
+  }
+  solid.density = Vector::Constant(1, materials[0].density);
+  if (!solid.material_of_tet.empty()) {
     solid.density.resize(mesh.num_tets());
     for (Index e = 0; e < mesh.num_tets(); ++e)
       solid.density[e] = materials[solid.material_of_tet[e]].density;
-  } else {
-    solid.density = Vector::Constant(1, base.density);
   }
-  solid.law = problem.law;
   for (std::size_t k = 0; k < materials.size(); ++k) {
-    const std::vector<double> row = material_law(problem.law).values(materials[k].moduli);
+    const std::vector<double> row = material_law(solid.law).values(materials[k].moduli, materials[k].parameters);
     solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
     for (std::size_t j = 0; j < row.size(); ++j) solid.parameters(k, j) = row[j];
   }
@@ -112,6 +139,8 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
       throw InputError("--material " + problem.law + " is for solids; a surface is a discrete shell");
     if (problem.materials)
       throw InputError(problem.materials->string() + ": a surface has no regions, so there is nothing to tell apart");
+    if (!problem.parameters.empty())
+      throw InputError("--parameter is for the laws of solids; a surface is a discrete shell");
     const Material base = base_material(problem);
     Shell shell = isotropic_shell(*surface, base.moduli, shell_thickness(problem, *surface), held, base.density);
     shell.damping = damping;
@@ -126,7 +155,7 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
   return solid;
 }
 
-ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named) {
+ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named, const Body& body) {
   ReduceOptions options = problem.recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
   options.subspace = problem.subspace;
   if (problem.dimension) options.dimension = *problem.dimension;
@@ -141,7 +170,7 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
   if (!problem.amplitudes.empty()) options.poses.amplitudes = problem.amplitudes;
   if (problem.norm) options.norm = *problem.norm == "mass" ? ForceNorm::Mass : ForceNorm::Stiffness;
   options.poses.inverted = inverted_rule(
-      problem.law, problem.inverted ? std::optional(inverted_poses(*problem.inverted)) : std::nullopt);
+      law(body), problem.inverted ? std::optional(inverted_poses(*problem.inverted)) : std::nullopt);
   if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, named.nodes());
   return options;
 }
@@ -171,6 +200,7 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options) {
     for (const std::filesystem::path& file : files) json[key].push_back(file.string());
   };
   add_files("fix_file", problem.fix_file);
+  if (!problem.parameters.empty()) json["parameters"] = problem.parameters;
   if (problem.thickness) json["thickness"] = *problem.thickness;
   if (problem.materials) json["materials"] = problem.materials->string();
   if (problem.snapshots) json["snapshots"] = problem.snapshots->string();

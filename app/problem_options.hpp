@@ -19,7 +19,8 @@ struct ProblemOptions {
 
   std::string law = "stvk", young = "1e5", poisson = "0.4", density = "1000";
   std::optional<std::string> thickness;            ///< of a surface: a length, or a share of the diagonal
-  std::optional<std::filesystem::path> materials;  ///< other values for regions, JSON
+  std::vector<std::string> parameters;             ///< "name=value" of the law, instead of what the moduli give
+  std::optional<std::filesystem::path> materials;  ///< law and parameters, and other values for regions, JSON
   std::string damping_alpha = "0", damping_beta = "0";
   std::vector<std::string> fix, fix_box, fix_region;
   std::vector<std::filesystem::path> fix_file;
@@ -38,7 +39,7 @@ struct ProblemOptions {
 Body load_body(const ProblemOptions& problem, const NamedMesh& named);
 /// The recipe with what the options change; selector and size are left to the command.
 /// \param named  the object's mesh, which a file of poses must fit.
-ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named);
+ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named, const Body& body);
 /// What poses the problem, and nothing that differs between two runs of the same job.
 Json problem_json(const ProblemOptions& problem, const ReduceOptions& options);
 

@@ -4,6 +4,7 @@
 #include <app/reduce_command.hpp>
 #include <app/surface.hpp>
 #include <app/terminal.hpp>
+#include <core/version.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
 #include <io/plot.hpp>
@@ -17,8 +18,8 @@ namespace {
 
 constexpr Index largest_search = 1000;  // points, if only a target error is given
 
-ReduceOptions method(const ReduceCommand& command, const NamedMesh& named) {
-  ReduceOptions options = reduce_options(command, named);
+ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const Body& body) {
+  ReduceOptions options = reduce_options(command, named, body);
   if (command.target_error) {
     options.target_error = *command.target_error;
     options.points = largest_search;
@@ -178,7 +179,7 @@ void ReduceCommand::run() const {
   Stopwatch watch;
   const NamedMesh named = load_mesh(mesh);
   const Body body = load_body(*this, named);
-  const ReduceOptions options = method(*this, named);
+  const ReduceOptions options = method(*this, named, body);
   if (!plots.empty()) make_folder(plots);
   const double read_seconds = watch.seconds();
 

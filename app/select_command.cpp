@@ -1,6 +1,7 @@
 #include <app/json_report.hpp>
 #include <app/select_command.hpp>
 #include <app/terminal.hpp>
+#include <core/version.hpp>
 #include <core/check.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>

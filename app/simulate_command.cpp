@@ -6,6 +6,7 @@
 #include <app/surface.hpp>
 #include <app/terminal.hpp>
 #include <app/trajectory.hpp>
+#include <core/version.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
 #include <io/csv.hpp>

@@ -40,5 +40,6 @@ function(supple_install)
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/suppleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/suppleConfig.cmake ${PROJECT_BINARY_DIR}/suppleConfigVersion.cmake
     ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake ${PROJECT_SOURCE_DIR}/cmake/FindAnasazi.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/SupplePlugin.cmake
     DESTINATION ${destination})
 endfunction()

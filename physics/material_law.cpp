@@ -57,7 +57,7 @@ const MaterialLaw& material_law(std::string_view name) {
     if (const MaterialLaw* law = all.find(name)) return *law;
   }
   throw std::invalid_argument("material law '" + std::string(name) + "' is not known, expected one of " +
-                              listed(material_laws()));
+                              listed(material_laws()) + ", or the --plugin that has it");
 }
 
 std::vector<std::string> material_laws() {

@@ -4,8 +4,10 @@
 #include <core/stopwatch.hpp>
 #include <physics/full_system.hpp>
 #include <reduction/reduce.hpp>
+#include <sparse/smallest_selection.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 namespace supple {
@@ -36,9 +38,9 @@ class Stages {
 };
 
 /// What a selection is made for, and what it is judged by.
-template <ForceModel AnyModel, Subspace S>
+template <ForceModel F, Subspace S>
 struct Training {
-  using Model = AnyModel;
+  using Model = F;
   using Fitting = ForceFitting<Model, S>;
 
   std::shared_ptr<const FullSystem<Model>> system;
@@ -77,8 +79,15 @@ Vector Training<Model, S>::softest_eigenvalues(const Matrix& stiffness, Index co
   return supple::softest_eigenvalues(stiffness, modes.num_zero, count);
 }
 
+/// What training needs to know of an object beside its system.
+struct ObjectTraits {
+  double diagonal;  ///< the length that amplitudes are shares of [m]
+  InvertedPoses inverted;
+  std::string component_name = "components";
+};
+
 template <ForceModel Model, Subspace S>
-Training<Model, S> train(const Body& body, std::shared_ptr<const FullSystem<Model>> system,
+Training<Model, S> train(const ObjectTraits& object, std::shared_ptr<const FullSystem<Model>> system,
                          std::shared_ptr<const S> subspace, const ReduceOptions& options, Stages& stage) {
   using Fitting = ForceFitting<Model, S>;
   ReduceReport& report = stage.report();
@@ -88,7 +97,7 @@ Training<Model, S> train(const Body& body, std::shared_ptr<const FullSystem<Mode
   report.dropped = subspace->report.dropped;
   report.notes.insert(report.notes.end(), subspace->report.notes.begin(), subspace->report.notes.end());
 
-  const double total_mass = system->nodal_mass().sum(), diagonal = bounding_box(node_positions(body)).diagonal();
+  const double total_mass = system->nodal_mass().sum();
   Matrix rest_stiffness;
   ReducedModes modes = stage("reduced stiffness", [&](auto) {
     rest_stiffness = project_stiffness(*subspace, *system);
@@ -96,9 +105,9 @@ Training<Model, S> train(const Body& body, std::shared_ptr<const FullSystem<Mode
   });
   PoseOptions pose_options = options.poses;
   pose_options.seed += 1000003 * options.seed;  // the seed of a run moves all random choices
-  pose_options.inverted = inverted_rule(law(body), options.poses.inverted);
+  pose_options.inverted = object.inverted;
   const auto sample = [&](const PoseOptions& some) {
-    return sample_poses(system->shared_model(), *subspace, modes, total_mass, diagonal, some);
+    return sample_poses(system->shared_model(), *subspace, modes, total_mass, object.diagonal, some);
   };
   const Matrix Q = stage("training poses", [&](auto) -> Matrix {
     const bool given = options.given_poses.size() > 0;
@@ -112,7 +121,7 @@ Training<Model, S> train(const Body& body, std::shared_ptr<const FullSystem<Mode
     report.shrunk_poses = poses.shrunk;
     if (poses.inverted > 0)
       report.notes.push_back(std::to_string(poses.inverted) + " of " + std::to_string(poses.Q.cols()) +
-                             " training poses had inverted " + std::string(component_name(body)) + " (" +
+                             " training poses had inverted " + object.component_name + " (" +
                              std::to_string(poses.inverted_components) + " in all); " +
                              std::to_string(poses.redrawn) + " draws were redrawn, " +
                              std::to_string(poses.shrunk) + " poses shrunk");
@@ -154,9 +163,53 @@ void with_training(const Body& body, const ReduceOptions& options, Stages& stage
     });
     with_subspace(*system, options.subspace_choice(), stage.progress(), stage,
                   [&]<typename S>(std::shared_ptr<const S> subspace) {
-                    visit(train<Model, S>(body, system, std::move(subspace), options, stage));
+                    const ObjectTraits object{.diagonal = bounding_box(node_positions(body)).diagonal(),
+                                              .inverted = inverted_rule(law(body), options.poses.inverted),
+                                              .component_name = std::string(component_name(body))};
+                    visit(train<Model, S>(object, system, std::move(subspace), options, stage));
                   });
   });
+}
+
+/// Components that do the work of all, in ascending order.
+struct WorkingComponents {
+  std::vector<Index> indices;
+  Vector weights;  ///< > 0
+};
+/// Those of a selection with a positive weight: others, that a selector had to keep, do no work.
+/// \throws SolverError if a weight is negative or none is positive. \param selector  its name, for the message.
+WorkingComponents working_components(const Selection& selection, const std::string& selector);
+
+/// Selects by select(problem, request), and measures what comes out; the report gets errors and spectra.
+template <ForceModel Model, Subspace S, typename Selector>
+WorkingComponents select_components(const Training<Model, S>& training, const Selector& select,
+                                    const ReduceOptions& options, Stages& stage) {
+  ReduceReport& report = stage.report();
+  SelectionRequest request(std::min<Index>(options.points, training.fitting.cols()));
+  request.target_error = options.target_error;
+  request.progress = stage.progress();
+  if (!training.held_out.empty())
+    request.validate = [&](const std::vector<Index>& indices, VectorIn weights) {
+      return training.held_out.front().second.error(indices, weights);
+    };
+  Selection selection = stage("selection", [&](auto) {
+    return options.target_error > 0 ? smallest_selection(select, training.fitting, request)
+                                    : select(training.fitting, request);
+  });
+  const WorkingComponents working = working_components(selection, options.selector);
+  report.points = static_cast<Index>(working.indices.size());
+  report.selection = std::move(selection.report);
+  report.training_error = report.selection.training_error;
+  stage("checks", [&](auto) {
+    report.held_out_error = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& [part, problem] : training.held_out)
+      report.held_out.emplace_back(part, problem.error(working.indices, working.weights));
+    if (!report.held_out.empty()) report.held_out_error = report.held_out.front().second;
+    const auto reduced = training.reduced_system(working.indices, working.weights);
+    report.exact_eigenvalues = training.softest_eigenvalues(training.rest_stiffness);
+    report.fitted_eigenvalues = training.softest_eigenvalues(reduced.stiffness(Vector::Zero(reduced.dim())));
+  });
+  return working;
 }
 
 /// \throws std::invalid_argument for options out of range.

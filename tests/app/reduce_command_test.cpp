@@ -338,6 +338,53 @@ TEST_F(ReduceCommandTest, RefusesModelsWhoseArraysContradict) {
   }
 }
 
+TEST_F(ReduceCommandTest, TakesLawsAndTheirParametersByName) {
+  std::map<std::string, json> reports;
+  for (const std::string law : {"neo-hookean", "stable-neo-hookean", "corotational", "ogden", "fung"})
+    reports[law] = report(small({"--material", law}));
+  for (const auto& [law, report] : reports) EXPECT_LT(report["training_error"], 0.5) << law;
+  // at rest all but the last, which has fibres, are the same linear elasticity
+  const double softest = reports["ogden"]["eigenvalues"]["exact"][0];
+  for (const auto& [law, report] : reports)
+    if (law != "fung") {
+      EXPECT_NEAR(report["eigenvalues"]["exact"][0].get<double>() / softest, 1, 1e-6) << law;
+    }
+  const json twice = report(small({"--material", "neo-hookean", "--young", "2e5"}));
+  const json named = report(small({"--material", "neo-hookean", "--parameter", "mu=71428.571428571435", "--parameter",
+                                   "lambda=285714.28571428580"}));  // of 2e5 Pa and 0.4
+  EXPECT_NEAR(named["eigenvalues"]["exact"][0].get<double>() / twice["eigenvalues"]["exact"][0].get<double>(), 1, 1e-6);
+  write("law.json", R"({"law": "neo-hookean", "parameters": {"mu": 71428.571428571435, "lambda": 285714.28571428580}})");
+  const json from_file = report(small({"--materials", "law.json"}));
+  EXPECT_EQ(from_file["eigenvalues"]["exact"], named["eigenvalues"]["exact"]);
+}
+
+TEST_F(ReduceCommandTest, RefusesLawsAndParametersThatThereAreNot) {
+  expect_refusal(small({"--material", "rubber"}), {"'rubber'", "stable-neo-hookean"});
+  expect_refusal(small({"--parameter", "nu=1"}), {"stvk", "'nu'", "lambda, mu"});
+  expect_refusal(small({"--parameter", "mu"}), {"--parameter 'mu'", "NAME=VALUE"});
+  expect_refusal(small({"--parameter", "mu=stiff"}), {"--parameter mu", "stiff"});
+  expect_refusal(small({"--parameter", "mu=1", "--parameter", "mu=2"}), {"mu", "twice"});
+  write("law.json", R"({"law": "ogden", "parameters": {"mu9": 1}})");
+  expect_refusal(small({"--materials", "law.json"}), {"law.json", "mu9"});
+  write("law.json", R"({"law": "gum"})");
+  expect_refusal(small({"--materials", "law.json"}), {"'gum'"});
+  EXPECT_FALSE(std::filesystem::exists(folder / "bar.supple"));
+}
+
+#ifdef SUPPLE_PLUGINS
+TEST_F(ReduceCommandTest, LoadsMaterialsOfOnesOwn) {
+  const std::string plugin = SUPPLE_PLUGINS "/libgent_plugin.so";
+  const json gent = report(small({"--plugin", plugin, "--material", "gent", "--parameter", "limit=5"}));
+  EXPECT_LT(gent["training_error"], 0.5);
+  EXPECT_THAT(report({"info", "bar.supple", "--plugin", plugin}).dump(), HasSubstr("gent"));
+  expect_refusal({"info", "bar.supple"}, {"bar.supple", "'gent'", "--plugin"});
+  expect_refusal({"simulate", "bar.supple"}, {"bar.supple", "'gent'"});
+  EXPECT_GT(report({"simulate", "bar.supple", "--plugin", plugin, "--time", "0.1"})["steps"], 0);
+  expect_refusal(small({"--plugin", "nowhere.so"}), {"nowhere.so", "no such file"});
+  expect_refusal(small({"--plugin", SUPPLE_PLUGINS "/libno_plugin.so"}), {"libno_plugin.so", "not a plug-in"});
+}
+#endif
+
 }  // namespace
 
 }  // namespace supple::test

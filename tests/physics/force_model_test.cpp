@@ -14,6 +14,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(StableNeoHookeanTets, ForceModelConformance, TetB
 INSTANTIATE_TYPED_TEST_SUITE_P(CorotationalTets, ForceModelConformance, TetBar<Corotational>);
 INSTANTIATE_TYPED_TEST_SUITE_P(OgdenTets, ForceModelConformance, TetBar<Ogden>);
 INSTANTIATE_TYPED_TEST_SUITE_P(FungTets, ForceModelConformance, TetBar<Fung>);
+INSTANTIATE_TYPED_TEST_SUITE_P(TetsOfAnyLaw, ForceModelConformance, AnyTets);
 INSTANTIATE_TYPED_TEST_SUITE_P(FlatShell, ForceModelConformance, FlatShell);
 INSTANTIATE_TYPED_TEST_SUITE_P(ClosedShell, ForceModelConformance, ClosedShell);
 INSTANTIATE_TYPED_TEST_SUITE_P(CurvedShell, ForceModelConformance, CurvedShell);

@@ -8,3 +8,15 @@ supple_test(physics LABEL unit LINKS supple::physics
 supple_test(shells LABEL unit LINKS supple::physics
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/discrete_shell_test.cpp ${CMAKE_CURRENT_LIST_DIR}/triangle_mesh_test.cpp)
 supple_test(composite_model LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/composite_model_test.cpp LINKS supple::reduction)
+
+if(TARGET gent_plugin)  # an example
+  foreach(plugin no_plugin other_version twice)
+    supple_plugin(${plugin} ${PROJECT_SOURCE_DIR}/tests/plugins/${plugin}.cpp)
+    target_include_directories(${plugin} PRIVATE ${PROJECT_SOURCE_DIR})
+    supple_build_options(${plugin})
+    set_target_properties(${plugin} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/plugins)
+  endforeach()
+  supple_test(plugin LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/plugin_test.cpp LINKS supple::physics)
+  target_compile_definitions(test_plugin PRIVATE SUPPLE_PLUGINS="${PROJECT_BINARY_DIR}/plugins")
+  add_dependencies(test_plugin no_plugin other_version twice gent_plugin)
+endif()

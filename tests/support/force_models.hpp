@@ -1,6 +1,7 @@
 #pragma once
 /// \file The models that the conformance suites run over: factories of models and of full systems.
 
+#include <physics/any_model.hpp>
 #include <physics/discrete_shell.hpp>
 #include <physics/full_system.hpp>
 #include <physics/mass.hpp>
@@ -25,6 +26,14 @@ struct TetBar {
     return {mesh(), materials};
   }
   static Vector nodal_mass() { return lumped_mass(mesh(), 1000.0); }
+};
+
+/// The same behind the erased type.
+struct AnyTets {
+  static constexpr double length = 0.1;
+  static AnyModel<4> make() {
+    return AnyModel<4>(std::make_shared<const TetElasticity<MooneyRivlin>>(TetBar<MooneyRivlin>::make()));
+  }
 };
 
 /// An irregular flat sheet with a boundary, a material a triangle. `bending` against stretch · length² tells

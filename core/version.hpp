@@ -1,0 +1,4 @@
+#pragma once
+/// \file The version of the library; CMake reads it from here, too.
+
+#define SUPPLE_VERSION "0.1.0"

@@ -1,0 +1,8 @@
+#include <examples/gent.hpp>
+#include <physics/plugin.hpp>
+
+#undef SUPPLE_VERSION
+#define SUPPLE_VERSION "0.0.9"
+SUPPLE_PLUGIN(registry) {
+  registry.add(supple::make_material_law<Gent>("too-old"));
+}

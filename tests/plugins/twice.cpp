@@ -1,0 +1,8 @@
+// Fails half way: what it added first must not stay.
+#include <examples/gent.hpp>
+#include <physics/plugin.hpp>
+
+SUPPLE_PLUGIN(registry) {
+  registry.add(supple::make_material_law<Gent>("half-way"));
+  registry.add(supple::make_material_law<Gent>("stvk"));
+}
