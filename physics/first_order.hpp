@@ -39,6 +39,43 @@ template <SemidiscreteSystem System>
 using TangentSolver = std::conditional_t<has_symmetric_tangent<System>(), SpdSolver<typename System::MatrixType>,
                                          LuSolver<typename System::MatrixType>>;
 
+namespace detail {
+
+/// r(u) = M c (u − ũ) + f(u) + k u − q: a step, or with c = 0 the steady state.
+template <SemidiscreteSystem System>
+struct BalanceOfRates {
+  using MatrixType = typename System::MatrixType;
+
+  BalanceOfRates(const System& some, double tolerance)
+      : system(some), rounding(8 * std::numeric_limits<double>::epsilon() / tolerance) {}
+
+  void residual(VectorIn u, VectorOut r) {
+    system.force(u, r);
+    if (load->has_stiffness()) r += load->stiffness * u;
+    const Vector storage = c * system.mass().cwiseProduct(u - u_tilde);
+    const Vector terms = (c * system.mass() + system.rest_stiffness().diagonal()).cwiseProduct(u);
+    scale_ = std::max({r.norm(), load->force.norm(), storage.norm(), rounding * terms.norm()});
+    r += storage - load->force;
+  }
+  void jacobian(VectorIn u, MatrixType& J) const {
+    system.stiffness(u, J);
+    add_diagonal(J, c * system.mass());
+    if (load->has_stiffness()) add_few(J, load->stiffness);
+  }
+  double scale(VectorIn) const { return scale_; }
+
+  const System& system;
+  double rounding;  // of the terms, relative to the tolerance
+  const AffineLoad<MatrixType>* load = nullptr;
+  double c = 0;
+  Vector u_tilde = Vector::Zero(system.dim());
+
+ private:
+  double scale_ = 0;
+};
+
+}  // namespace detail
+
 /// Advances M u̇ + f(u) = q; for heat, M are capacities [J/K], f heat flows out of nodes and q into them [W]. Each method
 /// ends a step with u̇⁺ = c (u⁺ − ũ), so M c (u⁺ − ũ) + f(u⁺) = q⁺ is solved by Newton's method with line search; no
 /// potential is asked for. \see Hairer & Wanner 1996, Secs. IV.3 and V.1.
@@ -83,38 +120,6 @@ class FirstOrderIntegrator {
   }
 
  private:
-  /// r(u) = M c (u − ũ) + f(u) + k u − q.
-  struct Step {
-    using MatrixType = typename System::MatrixType;
-
-    Step(const System& some, double tolerance)
-        : system(some), rounding(8 * std::numeric_limits<double>::epsilon() / tolerance) {}
-
-    void residual(VectorIn u, VectorOut r) {
-      system.force(u, r);
-      if (load->has_stiffness()) r += load->stiffness * u;
-      const Vector storage = c * system.mass().cwiseProduct(u - u_tilde);
-      const Vector terms = (c * system.mass() + system.rest_stiffness().diagonal()).cwiseProduct(u);
-      scale_ = std::max({r.norm(), load->force.norm(), storage.norm(), rounding * terms.norm()});
-      r += storage - load->force;
-    }
-    void jacobian(VectorIn u, MatrixType& J) const {
-      system.stiffness(u, J);
-      add_diagonal(J, c * system.mass());
-      if (load->has_stiffness()) add_few(J, load->stiffness);
-    }
-    double scale(VectorIn) const { return scale_; }
-
-    const System& system;
-    double rounding;  // of the terms, relative to the tolerance
-    const AffineLoad<MatrixType>* load = nullptr;
-    double c = 0;
-    Vector u_tilde;
-
-   private:
-    double scale_ = 0;
-  };
-
   /// c and ũ of a step from this state.
   void begin(const FirstOrderState& state) {
     if (options_.method == FirstOrderMethod::Trapezoidal) {
@@ -144,8 +149,21 @@ class FirstOrderIntegrator {
   const System& system_;
   double h_;
   FirstOrderOptions options_;
-  Step step_;
+  detail::BalanceOfRates<System> step_;
   TangentSolver<System> solver_;
 };
+
+/// The steady state, f(u) = q, from a guess u by Newton's method with line search.
+/// \return as newton_solve does; Stagnated if no steady state is determined, as nothing fixes the unknowns.
+template <SemidiscreteSystem System>
+Report solve_steady(const System& system, const AffineLoad<typename System::MatrixType>& load, Vector& u,
+                    const NewtonOptions& options = {}) {
+  require_size("load.force", load.force.size(), system.dim());
+  require_size("u", u.size(), system.dim());
+  detail::BalanceOfRates<System> balance(system, options.tolerance);
+  balance.load = &load;
+  TangentSolver<System> solver;
+  return newton_solve(balance, solver, u, options);
+}
 
 }  // namespace supple

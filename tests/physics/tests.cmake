@@ -8,3 +8,6 @@ supple_test(physics LABEL unit LINKS supple::physics
 supple_test(shells LABEL unit LINKS supple::physics
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/discrete_shell_test.cpp ${CMAKE_CURRENT_LIST_DIR}/triangle_mesh_test.cpp)
 supple_test(composite_model LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/composite_model_test.cpp LINKS supple::reduction)
+supple_test(heat LABEL unit LINKS supple::physics
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/first_order_test.cpp ${CMAKE_CURRENT_LIST_DIR}/heat_conduction_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/lu_solver_test.cpp)
