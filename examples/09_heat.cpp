@@ -1,7 +1,11 @@
-// Physics that is not elasticity: heat in a bar whose conductivity grows with temperature, warmed by two burners, in full
-// and reduced. One unknown a node, no potential, tangents that are not symmetric; the rest is as for elastic bodies.
+// Physics that is not elasticity: heat in a bar whose conductivity grows with temperature, warmed by two burners, in
+// full and reduced. One unknown a node, no potential, tangents that are not symmetric; the rest is as for elastic
+// bodies.
 //
 //   $ example_09_heat
+//   1944 unknowns in full, 12 reduced, closest to it within 0.0033; up to 189 K; a step in full takes 26.2 ms
+//   NN-OMP 60 of 9216 tets in 0.9 s: error 0.0004 in training, 0.0026 held out, 0.0041 on the way; a step takes 0.03 ms
+//   NN-HTP 60 of 9216 tets in 0.0 s: error 0.0007 in training, 0.0024 held out, 0.0039 on the way; a step takes 0.03 ms
 #include <core/stopwatch.hpp>
 #include <io/builtin_meshes.hpp>
 #include <io/node_sets.hpp>
@@ -30,9 +34,9 @@ struct Burners {
   Vector operator()(double time, double phase) const {
     Vector flow = Vector::Zero(num_nodes);
     for (const Index v : at_end)
-      flow[v] += 1500 * (1 + std::sin(2e-3 * time + phase)) / static_cast<double>(at_end.size());
+      flow[v] += 2500 * (1 + std::sin(2e-3 * time + phase)) / static_cast<double>(at_end.size());
     for (const Index v : at_side)
-      flow[v] += 1200 * (1 + std::cos(3e-3 * time + 2 * phase)) / static_cast<double>(at_side.size());
+      flow[v] += 2000 * (1 + std::cos(3e-3 * time + 2 * phase)) / static_cast<double>(at_side.size());
     return flow;
   }
 };
@@ -71,22 +75,31 @@ int main() {
   const auto U = std::make_shared<const DenseBasis>(PcaBasis{.snapshots = seen.temperatures, .dimension = 12}(full));
   const Matrix K_rest = project_stiffness(*U, full);
   const auto fitting = [&](const Heating& heating) {
-    return ForceFitting<Model, DenseBasis>(full.shared_model(), U, force_metric(ForceNorm::Stiffness, reduced_modes(K_rest)),
+    return ForceFitting<Model, DenseBasis>(full.shared_model(), U,
+                                           force_metric(ForceNorm::Stiffness, reduced_modes(K_rest)),
                                            poses_in_subspace(*U, full.nodal_mass(), heating.temperatures));
   };
   const auto training = fitting(seen), held_out = fitting(unseen);
-  std::printf("%td unknowns in full, %td reduced; up to %.0f K; a step in full takes %.1f ms\n", full.dim(), U->dim(),
-              unseen.temperatures.maxCoeff(), 1e3 * unseen.seconds_per_step);
+  const auto off = [&](const Matrix& temperatures) {
+    return (temperatures - unseen.temperatures).norm() / unseen.temperatures.norm();
+  };
+  std::printf(
+      "%td unknowns in full, %td reduced, closest to it within %.4f; up to %.0f K; a step in full takes %.1f ms\n",
+      full.dim(), U->dim(), off(U->W * held_out.poses()), unseen.temperatures.maxCoeff(),
+      1e3 * unseen.seconds_per_step);
 
   bool good = true;
   const auto report = [&](const char* name, const Selection& selected) {
-    const ReducedSystem reduced(full.shared_model(), U, selected.indices, selected.weights, K_rest, full.nodal_mass());
+    const ReducedSystem reduced(full.shared_model(), U, selected.indices, selected.weights, K_rest,
+                                full.nodal_mass());
     const Heating heating = heat_up(reduced, burners, 1, [&](VectorIn q) { return U->reconstruct(q); });
-    const double off = (heating.temperatures - unseen.temperatures).norm() / unseen.temperatures.norm();
-    std::printf("%-6s %td of %td tets in %.1f s: error %.4f in training, %.4f held out, %.4f on the way; a step takes %.2f ms\n",
-                name, selected.size(), mesh.num_tets(), selected.report.seconds, selected.report.training_error,
-                held_out.error(selected.indices, selected.weights), off, 1e3 * heating.seconds_per_step);
-    good = good && off < 0.05;
+    const double error = off(heating.temperatures);
+    std::printf(
+        "%-6s %td of %td tets in %.1f s: error %.4f in training, %.4f held out, %.4f on the way; a step takes %.2f "
+        "ms\n",
+        name, selected.size(), mesh.num_tets(), selected.report.seconds, selected.report.training_error,
+        held_out.error(selected.indices, selected.weights), error, 1e3 * heating.seconds_per_step);
+    good = good && error < 0.05;
   };
   report("NN-OMP", NnOmp{}(training, 60));
   report("NN-HTP", NnHtp{}(training, 60));

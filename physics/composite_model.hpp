@@ -14,9 +14,9 @@
 
 namespace supple {
 
-/// The sum of some models over the same nodes, with an energy if each has one. Its components are those of the first model, then
-/// those of the second, and so on; selectors see one list. Terms of smaller stencils are filled up with neighbouring
-/// nodes on which they do not act. Packs of components of one part run as fast as that part alone.
+/// The sum of some models over the same nodes, with an energy if each has one. Its components are those of the first
+/// model, then those of the second, and so on; selectors see one list. Terms of smaller stencils are filled up with
+/// neighbouring nodes on which they do not act. Packs of components of one part run as fast as that part alone.
 template <ForceModel First, ForceModel... Others>
 class CompositeModel {
  public:

@@ -38,7 +38,9 @@ class EmbeddedModel {
   Index num_nodes() const { return num_nodes_; }
   Index num_components() const { return model_.num_components(); }
   std::span<const Index, stencil_size> stencil(Index i) const { return stencils_[i]; }
-  double energy(Index i, const Local<local_dofs>& u_i) const requires PotentialModel<Model> { return model_.energy(i, u_i); }
+  double energy(Index i, const Local<local_dofs>& u_i) const requires PotentialModel<Model> {
+    return model_.energy(i, u_i);
+  }
   Local<local_dofs> force(Index i, const Local<local_dofs>& u_i) const { return model_.force(i, u_i); }
   LocalMatrix<local_dofs> stiffness(Index i, const Local<local_dofs>& u_i) const { return model_.stiffness(i, u_i); }
 

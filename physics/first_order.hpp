@@ -22,14 +22,15 @@ struct FirstOrderState {
 
 enum class FirstOrderMethod {
   BackwardEuler,  ///< first order; damps what is fast, for good
-  Trapezoidal,    ///< second order (Crank–Nicolson); what is much faster than a step swings on. Starts from u̇: balance()
+  Trapezoidal,    ///< second order (Crank–Nicolson); what is much faster than a step swings on. Starts from u̇:
+                  ///< balance()
   Bdf2,           ///< second order, and damps what is fast; starts with a step of backward Euler
 };
 
 struct FirstOrderOptions {
   FirstOrderMethod method = FirstOrderMethod::Bdf2;
-  /// ‖M u̇ + f(u) − q‖ against the largest of these terms, Euclidean norms. What remains of these terms by rounding alone
-  /// counts as converged.
+  /// ‖M u̇ + f(u) − q‖ against the largest of these terms, Euclidean norms. What remains of these terms by rounding
+  /// alone counts as converged.
   double tolerance = 1e-6;
   Index max_iterations = 30;  ///< of Newton's method in a step
 };
@@ -76,9 +77,9 @@ struct BalanceOfRates {
 
 }  // namespace detail
 
-/// Advances M u̇ + f(u) = q; for heat, M are capacities [J/K], f heat flows out of nodes and q into them [W]. Each method
-/// ends a step with u̇⁺ = c (u⁺ − ũ), so M c (u⁺ − ũ) + f(u⁺) = q⁺ is solved by Newton's method with line search; no
-/// potential is asked for. \see Hairer & Wanner 1996, Secs. IV.3 and V.1.
+/// Advances M u̇ + f(u) = q; for heat, M are capacities [J/K], f heat flows out of nodes and q into them [W]. Each
+/// method ends a step with u̇⁺ = c (u⁺ − ũ), so M c (u⁺ − ũ) + f(u⁺) = q⁺ is solved by Newton's method with line
+/// search; no potential is asked for. \see Hairer & Wanner 1996, Secs. IV.3 and V.1.
 template <SemidiscreteSystem System>
 class FirstOrderIntegrator {
  public:

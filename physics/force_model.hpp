@@ -32,7 +32,8 @@ concept PotentialModel = ForceModel<F> && requires(const F& model, Index i, cons
 };
 
 /// Whether K = ∂f/∂u is symmetric everywhere, as it is where there is a potential. A model or system whose tangent is
-/// not says so by `static constexpr bool symmetric_tangent = false`; matrices are then assembled and factorised in full.
+/// not says so by `static constexpr bool symmetric_tangent = false`; matrices are then projected and factorised in
+/// full.
 template <typename F>
 constexpr bool has_symmetric_tangent() {
   if constexpr (requires { F::symmetric_tangent; })

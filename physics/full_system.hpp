@@ -13,10 +13,10 @@
 
 namespace supple {
 
-/// Any ForceModel with lumped masses (for heat: capacities [J/K]) and fixed nodes, whose unknowns are zero. Unknowns are
-/// the displacements (temperatures) of the free nodes, interleaved (x₀ y₀ z₀ x₁ …); expand() and restrict() go to and from vectors over all nodes. Forces and
-/// tangents are evaluated in packs of eight components; sums have a fixed order, so results do not depend on
-/// the number of threads.
+/// Any ForceModel with lumped masses (for heat: capacities [J/K]) and fixed nodes, whose unknowns are zero. Unknowns
+/// are the displacements (temperatures) of the free nodes, interleaved (x₀ y₀ z₀ x₁ …); expand() and restrict() go to
+/// and from vectors over all nodes. Forces and tangents are evaluated in packs of eight components; sums have a fixed
+/// order, so results do not depend on the number of threads.
 template <ForceModel Model>
 class FullSystem {
  public:

@@ -11,8 +11,8 @@
 
 namespace supple {
 
-/// A conductivity is an aggregate of its parameters over a scalar type Real (a number, a pack of numbers) with k(θ) > 0
-/// [W/(m K)] of the temperature θ above a reference [K], and its derivative.
+/// A conductivity is an aggregate of its parameters over a scalar type Real (a number, a pack of numbers) with k(θ) >
+/// 0 [W/(m K)] of the temperature θ above a reference [K], and its derivative.
 template <typename Conductivity, typename Real>
 concept ConductivityOver = requires(const Conductivity& k, const Real& theta) {
   { k.value(theta) } -> std::convertible_to<Real>;
@@ -65,10 +65,10 @@ struct ExponentialConductivity {
   Real derivative(const Real& theta) const { return beta * value(theta); }
 };
 
-/// Steady heat flow out of nodes, f_a = ∫ k(θ) ∇θ·∇N_a [W], with ∇θ constant in a tet and k taken at the mean of its four
-/// temperatures (exact for a linear k). So C θ̇ + f(θ) = q for capacities C [J/K] and heat flows q into nodes [W]; nodes at
-/// the reference temperature are fixed ones. One component a tet, in order of the mesh. Where k varies, f has no potential
-/// and its tangent ∂f_a/∂θ_b = V (k ∇N_a·∇N_b + ¼ k' ∇N_a·∇θ) is not symmetric.
+/// Steady heat flow out of nodes, f_a = ∫ k(θ) ∇θ·∇N_a [W], with ∇θ constant in a tet and k taken at the mean of its
+/// four temperatures (exact for a linear k). So C θ̇ + f(θ) = q for capacities C [J/K] and heat flows q into nodes
+/// [W]; nodes at the reference temperature are fixed ones. One component a tet, in order of the mesh. Where k varies,
+/// f has no potential and its tangent ∂f_a/∂θ_b = V (k ∇N_a·∇N_b + ¼ k' ∇N_a·∇θ) is not symmetric.
 template <template <typename> class Conductivity>
 class HeatConduction {
  public:
@@ -95,8 +95,7 @@ class HeatConduction {
       const Local<4, Real> warming =
           against_gradients(gradient(theta) * (Real(0.25) * volume * conductivity.derivative(mean_theta)));
       LocalMatrix<4, Real> K;
-      for (int b = 0; b < 3; ++b)
-        K.col(b + 1) = against_gradients(gradients().row(b).transpose() * kV) + warming;
+      for (int b = 0; b < 3; ++b) K.col(b + 1) = against_gradients(gradients().row(b).transpose() * kV) + warming;
       K.col(0) = warming * Real(4) - K.col(1) - K.col(2) - K.col(3);
       return K;
     }
@@ -119,8 +118,8 @@ class HeatConduction {
     }
   };
 
-  /// \param conductivities  one for all tets, or one a tet. \throws std::invalid_argument on another number of them, a
-  /// node that does not exist or a tet whose volume is not positive.
+  /// \param conductivities  one for all tets, or one a tet. \throws std::invalid_argument on another number of them,
+  /// a node that does not exist or a tet whose volume is not positive.
   HeatConduction(const TetMesh& mesh, const std::vector<Conductivity<double>>& conductivities)
       : rest_positions_(mesh.nodes), tets_(mesh.tets) {
     const bool one_for_all = conductivities.size() == 1;
@@ -144,8 +143,10 @@ class HeatConduction {
   std::span<const Index, 4> stencil(Index i) const { return tets_[i]; }
   const Term<double>& term(Index i) const { return terms_[i]; }
 
-  Local<4> force(Index i, const Local<4>& theta_i) const { return terms_[i].force(theta_i); }          ///< [W]
-  LocalMatrix<4> stiffness(Index i, const Local<4>& theta_i) const { return terms_[i].stiffness(theta_i); }  ///< [W/K]
+  Local<4> force(Index i, const Local<4>& theta_i) const { return terms_[i].force(theta_i); }  ///< [W]
+  LocalMatrix<4> stiffness(Index i, const Local<4>& theta_i) const {
+    return terms_[i].stiffness(theta_i);
+  }  ///< [W/K]
 
  private:
   Points rest_positions_;
@@ -153,7 +154,8 @@ class HeatConduction {
   std::vector<Term<double>> terms_;
 };
 
-static_assert(ConductivityOver<LinearConductivity<Pack>, Pack> && ConductivityOver<ExponentialConductivity<Pack>, Pack>);
+static_assert(ConductivityOver<LinearConductivity<Pack>, Pack> &&
+              ConductivityOver<ExponentialConductivity<Pack>, Pack>);
 static_assert(PackableForceModel<HeatConduction<LinearConductivity>> &&
               !PotentialModel<HeatConduction<LinearConductivity>>);
 

@@ -1,5 +1,6 @@
 #pragma once
-/// \file Newton's method with a safeguarded line search: for minima of a smooth function, and for equations without one.
+/// \file Newton's method with a safeguarded line search: minimising a smooth function, and solving equations
+/// that are no gradient of one.
 
 #include <core/report.hpp>
 #include <physics/spd_solver.hpp>

@@ -11,13 +11,14 @@ namespace supple {
 
 /// What a surface gives to its surroundings. They are at the reference temperature, so nothing flows at θ = 0.
 struct SurfaceExchange {
-  double film = 0;         ///< convection, h [W/(m² K)]
-  double emissivity = 0;   ///< radiation, ε in [0, 1]
-  double ambient = 293.15; ///< absolute reference temperature T₀ [K]
+  double film = 0;          ///< convection, h [W/(m² K)]
+  double emissivity = 0;    ///< radiation, ε in [0, 1]
+  double ambient = 293.15;  ///< absolute reference temperature T₀ [K]
 };
 
 /// Heat flow out of the nodes of a surface [W], each triangle at the mean θ of its corners:
-/// f_a = ⅓ A (h θ + ε σ ((T₀ + θ)⁴ − T₀⁴)), which has a potential [W K]. Stable for θ > −T₀. One component a triangle.
+/// f_a = ⅓ A (h θ + ε σ ((T₀ + θ)⁴ − T₀⁴)), which has a potential [W K]. Stable for θ > −T₀. One component a
+/// triangle.
 class SurfaceHeatLoss {
  public:
   static constexpr int stencil_size = 3;
@@ -39,8 +40,7 @@ class SurfaceHeatLoss {
     }
     Local<3, Real> force(const Local<3, Real>& theta) const {
       const Real t = mean(theta), T = ambient;
-      const Real flow =
-          t * (film + radiation * (T * T * (Real(4) * T + Real(6) * t) + t * t * (Real(4) * T + t)));
+      const Real flow = t * (film + radiation * (T * T * (Real(4) * T + Real(6) * t) + t * t * (Real(4) * T + t)));
       return Local<3, Real>::Constant(area * flow * Real(1.0 / 3));
     }
     LocalMatrix<3, Real> stiffness(const Local<3, Real>& theta) const {

@@ -3,10 +3,9 @@
 #include <physics/single_threaded_blas.hpp>
 #include <physics/umfpack_solver.hpp>
 
-#include <umfpack.h>
-
 #include <array>
 #include <string>
+#include <umfpack.h>
 
 namespace supple {
 

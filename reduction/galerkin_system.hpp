@@ -27,7 +27,9 @@ class GalerkinSystem {
   const Vector& mass() const { return mass_; }  ///< ones: U is M-orthonormal
   const Matrix& rest_stiffness() const { return rest_stiffness_; }
 
-  double energy(VectorIn q) const requires PotentialModel<Model> { return system_->energy(system_->restrict(subspace_->reconstruct(q))); }
+  double energy(VectorIn q) const requires PotentialModel<Model> {
+    return system_->energy(system_->restrict(subspace_->reconstruct(q)));
+  }
   void force(VectorIn q, VectorOut f) const {
     const Vector full = system_->expand(system_->force(system_->restrict(subspace_->reconstruct(q))));
     f = subspace_->project(full);

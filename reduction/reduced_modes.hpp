@@ -18,8 +18,8 @@ Matrix project_stiffness(const S& subspace, const System& system) {
   return project_stiffness(subspace, system, system.rest_stiffness());
 }
 
-/// K̄ φ̄ = ω̄² φ̄ for the reduced stiffness K̄ at rest, which is symmetric (the reduced mass is I). Of heat, ω̄² are rates
-/// of decay.
+/// K̄ φ̄ = ω̄² φ̄ for the reduced stiffness K̄ at rest, which is symmetric (the reduced mass is I). For heat, ω̄² are
+/// the rates at which modes decay.
 struct ReducedModes {
   Vector omega;        ///< d, ascending [rad/s]
   Matrix Phi;          ///< d × d, orthonormal

@@ -15,8 +15,8 @@
 namespace supple {
 
 /// The unknowns q of u = U q under the forces F̃(q) = Σ wᵢ Uᵀ fᵢ(U q) over the selected components (Eq. 4).
-/// Energy (where the model has one), force and tangent come from the same components and weights, so they agree by differentiation.
-/// Nothing here touches the full mesh but loads, which read the rows of U they act on.
+/// Energy (where the model has one), force and tangent come from the same components and weights, so they agree by
+/// differentiation. Nothing here touches the full mesh but loads, which read the rows of U they act on.
 ///
 /// Components run in packs of eight: the rows of W behind a pack (3 × p for each tet) are stored so that one
 /// sweep from the cache yields the local displacements and takes the local forces back.

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Poses to train on: random points of the subspace, scaled by the object's own stiffness, or observed states.
+/// \file Poses to train on: random points of the subspace, scaled by the object's own stiffness, or states observed.
 
 #include <core/random.hpp>
 #include <reduction/pose_sweep.hpp>
@@ -41,8 +41,8 @@ struct TrainingPoses {
   Index shrunk = 0;               ///< poses that were scaled down
 };
 
-/// Observed states in the coordinates of the subspace: d × T as they are, n · node_dim × T displacements (temperatures) by
-/// projection in the mass norm, Uᵀ M u.
+/// Observed states in the coordinates of the subspace: d × T as they are, n · node_dim × T displacements (temperatures)
+/// by projection in the mass norm, Uᵀ M u.
 template <Subspace S>
 Matrix poses_in_subspace(const S& subspace, const Vector& nodal_mass, const Matrix& given) {
   if (given.rows() == subspace.dim()) return given;

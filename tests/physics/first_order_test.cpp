@@ -73,8 +73,8 @@ TEST(FirstOrderIntegrator, MethodsHaveTheirOrdersUnderALoadThatVaries) {
   }
 }
 
-// A step of 1 s where what is off the slow solution decays in a microsecond. Started off by one, Bdf2 and backward Euler
-// are back at once; the trapezoidal rule swings with a factor of nearly −1 a step.
+// A step of 1 s where what is off the slow solution decays in a microsecond. Started off by one, Bdf2 and backward
+// Euler are back at once; the trapezoidal rule swings with a factor of nearly −1 a step.
 TEST(FirstOrderIntegrator, WhatIsMuchFasterThanAStepDecaysButForTheTrapezoidalRule) {
   const Logistic system{.k = 2e6, .c = 0};
   const auto off = [&](FirstOrderMethod method, Index n) {
@@ -169,8 +169,9 @@ TEST(FirstOrderIntegrator, NumberOfThreadsDoesNotChangeABit) {
   const int before = num_threads();
   const auto run = [&](int threads) {
     set_num_threads(threads);
-    return heat_up(*bar.system, 300, 5, {}, [&](double) { return bar.end_flow(2000); },
-                   [&](VectorIn u) { return bar.system->expand(u); });
+    return heat_up(
+        *bar.system, 300, 5, {}, [&](double) { return bar.end_flow(2000); },
+        [&](VectorIn u) { return bar.system->expand(u); });
   };
   const Matrix one = run(1), two = run(2);
   set_num_threads(before);

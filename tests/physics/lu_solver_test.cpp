@@ -80,12 +80,9 @@ TEST(NewtonSolve, ShortensStepsThatWouldDiverge) {
 
 // A force that turns: no potential, its tangent is as far from symmetric as can be.
 TEST(NewtonSolve, SolvesEquationsWithoutAPotentialQuadratically) {
-  const auto r = [](VectorIn u) -> Vector {
-    return Vector{{-u[1] + 0.1 * u[0] * u[0] - 1, u[0] + std::sin(u[1])}};
-  };
-  DenseEquation equation{r, [](VectorIn u) -> Matrix {
-                           return (Matrix(2, 2) << 0.2 * u[0], -1, 1, std::cos(u[1])).finished();
-                         }};
+  const auto r = [](VectorIn u) -> Vector { return Vector{{-u[1] + 0.1 * u[0] * u[0] - 1, u[0] + std::sin(u[1])}}; };
+  DenseEquation equation{
+      r, [](VectorIn u) -> Matrix { return (Matrix(2, 2) << 0.2 * u[0], -1, 1, std::cos(u[1])).finished(); }};
   Vector u = Vector::Zero(2);
   LuSolver<Matrix> solver;
   const Report report = newton_solve(equation, solver, u, {.tolerance = 1e-14});

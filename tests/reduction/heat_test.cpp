@@ -41,8 +41,9 @@ Vector burners(const HeatedBar& bar, double t, double phase) {
          bar.side_flow(700 * (1 + std::cos(3e-3 * t + 2 * phase)) / 2);
 }
 Matrix full_motion(const HeatedBar& bar, double phase) {
-  return heat_up(*bar.system, h, num_steps, {.tolerance = 1e-8}, [&](double t) { return burners(bar, t, phase); },
-                 [&](VectorIn u) { return bar.system->expand(u); });
+  return heat_up(
+      *bar.system, h, num_steps, {.tolerance = 1e-8}, [&](double t) { return burners(bar, t, phase); },
+      [&](VectorIn u) { return bar.system->expand(u); });
 }
 
 /// Everything from snapshots to selection, at a size for tests.
@@ -73,8 +74,8 @@ TEST(HeatSubspaces, PrincipalComponentsOfTemperaturesAreOrthonormalInTheCapaciti
   EXPECT_NEAR(rest.norm(), sigma.tail(sigma.size() - 6).norm(), 1e-9 * sigma[0]);
 }
 
-// A rod, insulated but for one end, cools at rates ((j − ½) π / L)² k / (ρ c); linear elements and lumped capacities err
-// at second order, here by (½ π / 24)² / 12 and less than 1 % at the third.
+// A rod, insulated but for one end, cools at rates ((j − ½) π / L)² k / (ρ c); linear elements and lumped capacities
+// err at second order, here by (½ π / 24)² / 12 and less than 1 % at the third.
 TEST(HeatSubspaces, ModesDecayAtTheRatesOfARod) {
   const TetMesh mesh = kuhn_box(24, 1, 1, 1.0 / 24);
   const FullSystem<Conduction> system(Conduction(mesh, LinearConductivity<double>::from(40, 0.005)),
@@ -118,7 +119,8 @@ TEST(HeatSystems, ReducedTangentsAreProjectionsThoughTheyAreNotSymmetric) {
   EXPECT_FALSE(reduced.project(flow).has_stiffness());
 }
 
-// A block of three with an asymmetric model does not exist here; a tangent of few weighted terms has to be right, too.
+// A block of three with an asymmetric model does not exist here; a tangent of few weighted terms has to be right,
+// too.
 TEST(HeatSystems, SumsWeightedTets) {
   const HeatedBar bar;
   const auto basis = std::make_shared<const DenseBasis>(DenseBasis{random_matrix(bar.mesh.num_nodes(), 4, 1, 3), {}});
@@ -141,8 +143,8 @@ TEST(HeatSystems, SumsWeightedTets) {
 TEST(HeatSystems, WithoutReductionTheReducedTrajectoryIsTheFullOne) {
   const HeatedBar bar;
   const NodeNumbering& numbering = bar.system->numbering();
-  auto basis = std::make_shared<DenseBasis>(
-      DenseBasis{RowMatrix::Zero(bar.mesh.num_nodes(), numbering.num_free()), {}});
+  auto basis =
+      std::make_shared<DenseBasis>(DenseBasis{RowMatrix::Zero(bar.mesh.num_nodes(), numbering.num_free()), {}});
   for (Index f = 0; f < numbering.num_free(); ++f)
     basis->W(numbering.free_nodes()[f], f) = 1 / std::sqrt(bar.system->nodal_mass()[numbering.free_nodes()[f]]);
   const Reduced reduced = reduced_system(bar, basis, all_tets(bar), Vector::Ones(bar.mesh.num_tets()));
@@ -152,9 +154,8 @@ TEST(HeatSystems, WithoutReductionTheReducedTrajectoryIsTheFullOne) {
     const Matrix full =
         heat_up(*bar.system, h, 15, options, flows, [&](VectorIn u) { return bar.system->expand(u); });
     EXPECT_GT(full.maxCoeff(), 50) << "the conductivity is to vary";
-    EXPECT_TRUE(is_near(
-        heat_up(reduced, h, 15, options, flows, [&](VectorIn q) { return basis->reconstruct(q); }), full,
-        1e-7 * full.maxCoeff()));
+    EXPECT_TRUE(is_near(heat_up(reduced, h, 15, options, flows, [&](VectorIn q) { return basis->reconstruct(q); }),
+                        full, 1e-7 * full.maxCoeff()));
   }
 }
 
@@ -170,9 +171,9 @@ TEST(HeatFitting, ColumnsAreTheProjectedFlowsOfTets) {
     Matrix rows(4, 6);
     for (int a = 0; a < 4; ++a) rows.row(a) = trained.basis->W.row(trained.bar.mesh.tets[j][a]);
     for (Index t = 0; t < 20; ++t) {
-      const Vector expected =
-          L * rows.transpose() * trained.bar.system->model().force(j, rows * fitting.poses().col(t)) /
-          (L * fitting.forces().col(t)).norm();
+      const Vector expected = L * rows.transpose() *
+                              trained.bar.system->model().force(j, rows * fitting.poses().col(t)) /
+                              (L * fitting.forces().col(t)).norm();
       EXPECT_TRUE(is_near(column.segment(6 * t, 6), expected, 1e-12));
     }
   }
@@ -188,12 +189,13 @@ void expect_a_good_reduction(const TrainedBar& trained, const Selector& select) 
   ASSERT_GT(selection.weights.minCoeff(), 0);
   EXPECT_NEAR(selection.report.training_error, fitting.error(selection.indices, selection.weights), 1e-8);
   EXPECT_LT(selection.report.training_error, 0.01);
-  EXPECT_LT(trained.fitting(trained.held_out, ForceNorm::Stiffness).error(selection.indices, selection.weights), 0.03);
+  EXPECT_LT(trained.fitting(trained.held_out, ForceNorm::Stiffness).error(selection.indices, selection.weights),
+            0.03);
 
   const Reduced reduced = reduced_system(trained.bar, trained.basis, selection.indices, selection.weights);
-  const Matrix theta =
-      heat_up(reduced, h, num_steps, {.tolerance = 1e-8}, [&](double t) { return burners(trained.bar, t, 1); },
-              [&](VectorIn q) { return trained.basis->reconstruct(q); });
+  const Matrix theta = heat_up(
+      reduced, h, num_steps, {.tolerance = 1e-8}, [&](double t) { return burners(trained.bar, t, 1); },
+      [&](VectorIn q) { return trained.basis->reconstruct(q); });
   EXPECT_LT((theta - trained.held_out).norm(), 0.03 * trained.held_out.norm());
 }
 
