@@ -39,7 +39,8 @@ function(supple_install)
     ${PROJECT_BINARY_DIR}/suppleConfig.cmake INSTALL_DESTINATION ${destination})
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/suppleConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${PROJECT_BINARY_DIR}/suppleConfig.cmake ${PROJECT_BINARY_DIR}/suppleConfigVersion.cmake
-    ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake ${PROJECT_SOURCE_DIR}/cmake/FindAnasazi.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake ${PROJECT_SOURCE_DIR}/cmake/FindUMFPACK.cmake
+    ${PROJECT_SOURCE_DIR}/cmake/FindAnasazi.cmake
     ${PROJECT_SOURCE_DIR}/cmake/SupplePlugin.cmake
     DESTINATION ${destination})
 endfunction()

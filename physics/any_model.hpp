@@ -11,7 +11,7 @@
 
 namespace supple {
 
-/// Any translation invariant force model of terms on `nodes` nodes, behind one type: what commands, files and plug-ins
+/// Any translation invariant force model, with a potential, of terms on `nodes` nodes, behind one type: what commands, files and plug-ins
 /// hand around, so that what is built on it is compiled once. Evaluation costs a call through a pointer for eight
 /// components. Copies share the model.
 template <int nodes, int dim = 3>
@@ -51,7 +51,7 @@ class AnyModel {
     virtual void with_terms(Index i, void (*visit)(const Terms&, void*), void* state) const = 0;
   };
 
-  template <ForceModel Model>
+  template <PotentialModel Model>
   requires(Model::stencil_size == nodes && Model::node_dim == dim && is_translation_invariant<Model>())
   explicit AnyModel(std::shared_ptr<const Model> model) : model_(std::make_shared<const Of<Model>>(std::move(model))) {}
 

@@ -1,5 +1,6 @@
 #include <core/check.hpp>
 #include <physics/cholmod_solver.hpp>
+#include <physics/metis_mutex.hpp>
 #include <physics/single_threaded_blas.hpp>
 #include <physics/supernodal_factor.hpp>
 
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,10 +101,7 @@ std::vector<int> fill_reducing_order(const SparseMatrix& A, const std::vector<in
   common->nmethods = 2;  // the sparser factor wins; a CHOLMOD without METIS skips it
   common->method[0].ordering = CHOLMOD_METIS;
   common->method[1].ordering = CHOLMOD_AMD;
-  // METIS draws from the C library's generator, which it seeds first: one caller at a time gets the same
-  // ordering.
-  static std::mutex mutex;
-  const std::lock_guard lock(mutex);
+  const std::lock_guard lock(metis_mutex);
   cholmod_factor* L = cholmod_analyze(&graph, common);
   workspace.check();
   std::vector<int> order;

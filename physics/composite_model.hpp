@@ -14,9 +14,9 @@
 
 namespace supple {
 
-/// The sum of the energies of some models over the same nodes. Its components are those of the first model, then
-/// those of the second, and so on; selectors see one list. Terms of smaller stencils are filled up with neighbouring
-/// nodes on which they do not act. Packs of components of one part run as fast as that part alone.
+/// The sum of some models over the same nodes, with an energy if each has one. Its components are those of the first
+/// model, then those of the second, and so on; selectors see one list. Terms of smaller stencils are filled up with
+/// neighbouring nodes on which they do not act. Packs of components of one part run as fast as that part alone.
 template <ForceModel First, ForceModel... Others>
 class CompositeModel {
  public:
@@ -25,6 +25,8 @@ class CompositeModel {
   static constexpr int local_dofs = stencil_size * node_dim;
   static constexpr bool translation_invariant =
       is_translation_invariant<First>() && (is_translation_invariant<Others>() && ...);
+  static constexpr bool symmetric_tangent =
+      has_symmetric_tangent<First>() && (has_symmetric_tangent<Others>() && ...);
   static_assert(((Others::node_dim == node_dim) && ...), "parts need as many unknowns a node as one another");
   static constexpr std::size_t num_parts = 1 + sizeof...(Others);
   template <std::size_t part>
@@ -66,7 +68,8 @@ class CompositeModel {
     return std::get<which>(parts_);
   }
 
-  double energy(Index i, const Local<local_dofs>& u_i) const {
+  double energy(Index i, const Local<local_dofs>& u_i) const
+      requires(PotentialModel<First> && (PotentialModel<Others> && ...)) {
     double energy = 0;
     for_part_of(i, [&](const auto& model, Index own) { energy = model.energy(own, own_dofs(model, u_i)); });
     return energy;
@@ -163,7 +166,7 @@ class TermPack<CompositeModel<Models...>> {
           return lanes;
         }()) {}
 
-  Pack energy(const Displacements& u) const {
+  Pack energy(const Displacements& u) const requires PotentialModel<Composite> {
     return evaluate(Pack(0.0), u, [](const auto& terms, const auto& own, Pack& e) { e = terms.energy(own); },
                     [&](int k, const auto& own, Pack& e) { e.set(k, model_->energy(lanes_[k], own)); });
   }

@@ -18,6 +18,7 @@ class EmbeddedModel {
   static constexpr int node_dim = Model::node_dim;
   static constexpr int local_dofs = Model::local_dofs;
   static constexpr bool translation_invariant = is_translation_invariant<Model>();
+  static constexpr bool symmetric_tangent = has_symmetric_tangent<Model>();
 
   /// \throws std::invalid_argument unless there is a node of the object for each of the model, each once.
   EmbeddedModel(Model model, const std::vector<Index>& nodes, Index num_nodes)
@@ -37,7 +38,9 @@ class EmbeddedModel {
   Index num_nodes() const { return num_nodes_; }
   Index num_components() const { return model_.num_components(); }
   std::span<const Index, stencil_size> stencil(Index i) const { return stencils_[i]; }
-  double energy(Index i, const Local<local_dofs>& u_i) const { return model_.energy(i, u_i); }
+  double energy(Index i, const Local<local_dofs>& u_i) const requires PotentialModel<Model> {
+    return model_.energy(i, u_i);
+  }
   Local<local_dofs> force(Index i, const Local<local_dofs>& u_i) const { return model_.force(i, u_i); }
   LocalMatrix<local_dofs> stiffness(Index i, const Local<local_dofs>& u_i) const { return model_.stiffness(i, u_i); }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What deforms: internal energies that are sums of local terms.
+/// \file What acts between nodes: forces, or fluxes, that are sums of local terms.
 
 #include <core/types.hpp>
 
@@ -8,24 +8,41 @@
 
 namespace supple {
 
-/// Internal energy E(u) = Σᵢ eᵢ(uᵢ): m local terms ("components"); term i reads the nodes of its stencil,
-/// node_dim unknowns each, node after node. Force means the gradient: f = ∂E/∂u.
+/// f(u) = Σᵢ fᵢ(uᵢ): m local terms ("components"); term i reads the nodes of its stencil, node_dim unknowns each,
+/// node after node. For deformable objects u are displacements [m] and f forces [N]; for heat, temperatures [K] and
+/// heat flows [W]. Units below are those of deformable objects.
 ///
-/// A model also promises, and tests/conformance checks: fᵢ = ∂eᵢ/∂uᵢ; Kᵢ = ∂fᵢ/∂uᵢ, symmetric; fᵢ(0) = 0 (the
-/// rest state is an equilibrium of every term); stencil nodes distinct and in range; const calls safe from
-/// several threads.
+/// A model also promises, and tests/conformance checks: Kᵢ = ∂fᵢ/∂uᵢ, symmetric unless the model says otherwise (see
+/// has_symmetric_tangent), symmetric and positive semi-definite at rest in any case; fᵢ(0) = 0 (the rest state is an
+/// equilibrium of every term); stencil nodes distinct and in range; const calls safe from several threads.
 template <typename F>
 concept ForceModel = requires(const F& model, Index i, const Local<F::local_dofs>& u_i) {
   requires F::local_dofs == F::stencil_size* F::node_dim;                                // e.g. 12 = 4 · 3
   { model.num_nodes() } -> std::convertible_to<Index>;                                   // n
   { model.num_components() } -> std::convertible_to<Index>;                              // m
   { model.stencil(i) } -> std::convertible_to<std::span<const Index, F::stencil_size>>;  // the nodes in u_i
-  { model.energy(i, u_i) } -> std::convertible_to<double>;                               // [J]
   { model.force(i, u_i) } -> std::convertible_to<Local<F::local_dofs>>;                  // [N]
   { model.stiffness(i, u_i) } -> std::convertible_to<LocalMatrix<F::local_dofs>>;        // [N/m]
 };
 
-/// True if eᵢ does not change when all nodes of its stencil move by the same vector. A model says so by
+/// A force model with a potential, E(u) = Σᵢ eᵢ(uᵢ). It also promises fᵢ = ∂eᵢ/∂uᵢ, so the tangent is symmetric.
+template <typename F>
+concept PotentialModel = ForceModel<F> && requires(const F& model, Index i, const Local<F::local_dofs>& u_i) {
+  { model.energy(i, u_i) } -> std::convertible_to<double>;  // [J]
+};
+
+/// Whether K = ∂f/∂u is symmetric everywhere, as it is where there is a potential. A model or system whose tangent is
+/// not says so by `static constexpr bool symmetric_tangent = false`; matrices are then projected and factorised in
+/// full.
+template <typename F>
+constexpr bool has_symmetric_tangent() {
+  if constexpr (requires { F::symmetric_tangent; })
+    return F::symmetric_tangent;
+  else
+    return true;
+}
+
+/// True if fᵢ does not change when the same vector is added at all nodes of its stencil. A model says so by
 /// `static constexpr bool translation_invariant = true`; work and storage of a reduced term then fall by one
 /// node.
 template <typename F>

@@ -13,15 +13,16 @@
 
 namespace supple {
 
-/// Any ForceModel with lumped masses and fixed nodes. Unknowns are the displacements of the free nodes,
-/// interleaved (x₀ y₀ z₀ x₁ …); expand() and restrict() go to and from vectors over all nodes. Forces and
-/// tangents are evaluated in packs of eight components; sums have a fixed order, so results do not depend on
-/// the number of threads.
+/// Any ForceModel with lumped masses (for heat: capacities [J/K]) and fixed nodes, whose unknowns are zero. Unknowns
+/// are the displacements (temperatures) of the free nodes, interleaved (x₀ y₀ z₀ x₁ …); expand() and restrict() go to
+/// and from vectors over all nodes. Forces and tangents are evaluated in packs of eight components; sums have a fixed
+/// order, so results do not depend on the number of threads.
 template <ForceModel Model>
 class FullSystem {
  public:
   using MatrixType = SparseMatrix;
   static constexpr int node_dim = Model::node_dim;
+  static constexpr bool symmetric_tangent = has_symmetric_tangent<Model>();
 
   /// \param nodal_mass  n, > 0 [kg].  \param fixed_nodes  nodes that never move, in any order.
   FullSystem(Model model, Vector nodal_mass, const std::vector<Index>& fixed_nodes = {})
@@ -65,7 +66,7 @@ class FullSystem {
   const Vector& mass() const { return mass_; }              ///< dim [kg]
   const Vector& nodal_mass() const { return nodal_mass_; }  ///< n [kg]
 
-  double energy(VectorIn u) const {
+  double energy(VectorIn u) const requires PotentialModel<Model> {
     const Vector full = expand(u);
     std::vector<double> partial(num_chunks());
     parallel_for(num_chunks(), [&](Index chunk) {
@@ -157,6 +158,8 @@ class FullSystem {
   }
   const SparseMatrix& rest_stiffness() const { return rest_stiffness_; }
 
+  /// Forces on all nodes, n · node_dim → on the unknowns.
+  AffineLoad<SparseMatrix> project(VectorIn nodal_forces) const { return {restrict(nodal_forces), {}}; }
   AffineLoad<SparseMatrix> project(const Loads& loads) const requires(node_dim == 3) {
     check_loads(loads, num_nodes());
     AffineLoad<SparseMatrix> result{Vector::Zero(dim()), {}};

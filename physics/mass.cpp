@@ -18,6 +18,12 @@ Vector lumped_mass(const TetMesh& mesh, double density) {
   return lumped_mass(mesh, Vector::Constant(1, density));
 }
 
+Vector lumped_heat_capacity(const TetMesh& mesh, double density, double specific_heat) {
+  require(specific_heat > 0,
+          "specific heat is " + std::to_string(specific_heat) + " J/(kg K), expected > 0");
+  return specific_heat * lumped_mass(mesh, density);
+}
+
 Vector lumped_mass(const TriangleMesh& mesh, VectorIn density, VectorIn thickness) {
   if (density.size() != 1) require_size("density", density.size(), mesh.num_triangles());
   if (thickness.size() != 1) require_size("thickness", thickness.size(), mesh.num_triangles());

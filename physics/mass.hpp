@@ -1,5 +1,5 @@
 #pragma once
-/// \file Lumped masses.
+/// \file Lumped masses and heat capacities.
 
 #include <core/check.hpp>
 #include <physics/tet_mesh.hpp>
@@ -11,6 +11,9 @@ namespace supple {
 /// \param density [kg/m³], one for all tets or one a tet; > 0.
 Vector lumped_mass(const TetMesh& mesh, VectorIn density);
 Vector lumped_mass(const TetMesh& mesh, double density);
+
+/// Heat capacity of each node [J/K], n, likewise. \param density [kg/m³], > 0. \param specific_heat [J/(kg K)], > 0.
+Vector lumped_heat_capacity(const TetMesh& mesh, double density, double specific_heat);
 
 /// Mass of each node [kg] of a shell, n: a third of the mass of each triangle around it, density · thickness
 /// · area. \param density    [kg/m³], one for all triangles or one a triangle; > 0. \param thickness  [m],

@@ -1,5 +1,6 @@
 #pragma once
-/// \file Minimising a smooth function by Newton's method with a safeguarded line search.
+/// \file Newton's method with a safeguarded line search: minimising a smooth function, and solving equations
+/// that are no gradient of one.
 
 #include <core/report.hpp>
 #include <physics/spd_solver.hpp>
@@ -21,6 +22,14 @@ concept SmoothObjective = requires(O& objective, VectorIn u, VectorOut g, typena
   {
     objective.metric()
     } -> std::convertible_to<const Vector&>;  // positive diagonal that makes H definite when added
+};
+
+/// r(u) = 0 with the Jacobian J = ∂r/∂u, for forces that need not have a potential; `scale` as above.
+template <typename E>
+concept SmoothEquation = requires(E& equation, VectorIn u, VectorOut r, typename E::MatrixType& J) {
+  equation.residual(u, r);
+  equation.jacobian(u, J);
+  { equation.scale(u) } -> std::convertible_to<double>;  // valid for the u of the last call of residual
 };
 
 struct NewtonOptions {
@@ -102,6 +111,40 @@ Report newton_minimize(O& objective, SpdSolver<typename O::MatrixType>& solver, 
       objective.gradient(u, g);
       return report.status = Status::Stagnated, report;
     }
+  }
+}
+
+/// Improves u until the residual ‖r‖ / scale is at most the tolerance; steps are shortened until ‖r‖ decreases enough,
+/// along −J⁻¹ r, which for small steps it always does.
+/// \param solver  an SpdSolver or LuSolver; is left holding the last factorised Jacobian.
+/// \return residual reached; Stagnated when rounding allows no further decrease or J could not be factorised, NotFinite
+/// if the start already is.
+template <SmoothEquation E, typename Solver>
+Report newton_solve(E& equation, Solver& solver, Vector& u, const NewtonOptions& options = {}) {
+  typename E::MatrixType J;
+  Vector r(u.size()), r_trial(u.size());
+  equation.residual(u, r);
+  Report report;
+  for (report.iterations = 0;; ++report.iterations) {
+    const double norm = r.norm();
+    report.residual = detail::relative(norm, equation.scale(u));
+    if (!std::isfinite(report.residual)) return report.status = Status::NotFinite, report;
+    if (report.residual <= options.tolerance) return report.status = Status::Converged, report;
+    if (report.iterations == options.max_iterations) return report.status = Status::MaxIterations, report;
+    equation.jacobian(u, J);
+    if (!solver.factorize(J)) return report.status = Status::Stagnated, report;
+    const Vector step = -solver.solve(r);
+    double t = 1;
+    Vector trial = u + step;
+    equation.residual(trial, r_trial);
+    while (!(r_trial.norm() <= (1 - 1e-4 * t) * norm)) {  // true for NaN
+      t *= 0.5;
+      if (t < 1e-10) return report.status = Status::Stagnated, report;
+      trial = u + t * step;
+      equation.residual(trial, r_trial);
+    }
+    u.swap(trial);
+    r.swap(r_trial);
   }
 }
 

@@ -16,10 +16,10 @@ class SpdSolver;
 template <>
 class SpdSolver<SparseMatrix> {
  public:
-  /// \param block_size  see CholmodSolver::analyze; the pattern is analysed at the first call only.
-  [[nodiscard]] bool factorize(const SparseMatrix& A, Index block_size = 3) {
+  /// The pattern is analysed at the first call only.
+  [[nodiscard]] bool factorize(const SparseMatrix& A) {
     if (analyzed_nonzeros_ != A.nonZeros()) {
-      cholesky_.analyze(A, A.rows() % block_size == 0 ? block_size : 1);
+      cholesky_.analyze(A, has_blocks_of_three(A) ? 3 : 1);
       analyzed_nonzeros_ = A.nonZeros();
     }
     return cholesky_.factorize(A);
@@ -27,6 +27,15 @@ class SpdSolver<SparseMatrix> {
   Vector solve(VectorIn b) const { return cholesky_.solve(b); }
 
  private:
+  /// Whether rows come in triples of as many entries each, as those of nodes in ℝ³ do.
+  static bool has_blocks_of_three(const SparseMatrix& A) {
+    if (A.rows() % 3 != 0) return false;
+    const auto length = [&](Index j) { return A.outerIndexPtr()[j + 1] - A.outerIndexPtr()[j]; };
+    for (Index j = 0; j < A.cols(); j += 3)
+      if (length(j) % 3 != 0 || length(j + 1) != length(j) || length(j + 2) != length(j)) return false;
+    return true;
+  }
+
   CholmodSolver cholesky_;
   Index analyzed_nonzeros_ = -1;
 };

@@ -20,9 +20,11 @@ concept PackableForceModel = ForceModel<F> &&
     requires(const F& model, Index i, const typename F::template Term<Pack>& term,
              const Local<F::local_dofs, Pack>& u_i) {
   { model.term(i) } -> std::convertible_to<typename F::template Term<double>>;
-  { term.energy(u_i) } -> std::convertible_to<Pack>;
   { term.force(u_i) } -> std::convertible_to<Local<F::local_dofs, Pack>>;
   { term.stiffness(u_i) } -> std::convertible_to<LocalMatrix<F::local_dofs, Pack>>;
+  requires !PotentialModel<F> || requires {
+    { term.energy(u_i) } -> std::convertible_to<Pack>;
+  };
 };
 
 using PackIndices = std::array<Index, Pack::size>;
@@ -48,7 +50,7 @@ class TermPack {
   TermPack(std::shared_ptr<const F> model, const PackIndices& components)
       : model_(std::move(model)), components_(components) {}
 
-  Pack energy(const Displacements& u) const {
+  Pack energy(const Displacements& u) const requires PotentialModel<F> {
     Pack result;
     for (int k = 0; k < Pack::size; ++k) result.set(k, model_->energy(components_[k], lane(u, k)));
     return result;
@@ -103,7 +105,7 @@ class TermPack<F> {
     term_ = std::bit_cast<Packed>(broadcast);
   }
 
-  Pack energy(const Displacements& u) const { return term_.energy(u); }
+  Pack energy(const Displacements& u) const requires PotentialModel<F> { return term_.energy(u); }
   Displacements force(const Displacements& u) const { return term_.force(u); }
   LocalMatrix<F::local_dofs, Pack> stiffness(const Displacements& u) const { return term_.stiffness(u); }
   /// Current over rest volume, where the terms have such a thing.

@@ -6,8 +6,6 @@
 #include <physics/term_pack.hpp>
 #include <physics/tet_mesh.hpp>
 
-#include <Eigen/LU>
-
 #include <array>
 #include <vector>
 
@@ -92,21 +90,11 @@ class TetElasticity {
     tets_ = mesh.tets;
     terms_.reserve(tets_.size());
     for (Index e = 0; e < mesh.num_tets(); ++e) {
-      for (const Index v : tets_[e])
-        if (v < 0 || v >= num_nodes())
-          throw std::invalid_argument("tet " + std::to_string(e) + " names node " + std::to_string(v) +
-                                      ", expected 0 to " + std::to_string(num_nodes() - 1));
-      Matrix3<double> edges;
-      for (int a = 0; a < 3; ++a)
-        edges.col(a) = (mesh.nodes.row(tets_[e][a + 1]) - mesh.nodes.row(tets_[e][0])).transpose();
-      const double volume = edges.determinant() / 6;
-      require(volume > 0,
-              "tet " + std::to_string(e) + " has volume " + std::to_string(volume) + " m^3, expected > 0");
-      const Matrix3<double> inverse = edges.inverse();
+      const TetShape shape = tet_shape(mesh, e);
       Term<double> term{.inverse_edges = {},
-                        .volume = volume,
+                        .volume = shape.volume,
                         .material = materials.size() == 1 ? materials[0] : materials[e]};
-      std::copy_n(inverse.data(), 9, term.inverse_edges.begin());
+      std::copy_n(shape.inverse_edges.data(), 9, term.inverse_edges.begin());
       terms_.push_back(term);
     }
   }

@@ -3,6 +3,7 @@
 #include <physics/tet_mesh.hpp>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 #include <cmath>
 #include <limits>
@@ -52,6 +53,19 @@ struct EdgeVectors {
 double tet_volume(const TetMesh& mesh, Index e) {
   const EdgeVectors tet(mesh, e);
   return tet.ab.cross(tet.ac).dot(tet.ad) / 6;
+}
+
+TetShape tet_shape(const TetMesh& mesh, Index e) {
+  for (const Index v : mesh.tets[e])
+    if (v < 0 || v >= mesh.num_nodes())
+      throw std::invalid_argument("tet " + std::to_string(e) + " names node " + std::to_string(v) +
+                                  ", expected 0 to " + std::to_string(mesh.num_nodes() - 1));
+  const EdgeVectors tet(mesh, e);
+  Matrix3<double> edges;
+  edges << tet.ab, tet.ac, tet.ad;
+  const double volume = edges.determinant() / 6;
+  require(volume > 0, "tet " + std::to_string(e) + " has volume " + std::to_string(volume) + " m^3, expected > 0");
+  return {edges.inverse(), volume};
 }
 
 int tet_orientation(const TetMesh& mesh, Index e) {

@@ -14,6 +14,7 @@ template <ForceModel Model, Subspace S>
 class GalerkinSystem {
  public:
   using MatrixType = Matrix;
+  static constexpr bool symmetric_tangent = has_symmetric_tangent<Model>();
 
   GalerkinSystem(std::shared_ptr<const FullSystem<Model>> system, std::shared_ptr<const S> subspace)
       : system_(std::move(system)),
@@ -26,7 +27,9 @@ class GalerkinSystem {
   const Vector& mass() const { return mass_; }  ///< ones: U is M-orthonormal
   const Matrix& rest_stiffness() const { return rest_stiffness_; }
 
-  double energy(VectorIn q) const { return system_->energy(system_->restrict(subspace_->reconstruct(q))); }
+  double energy(VectorIn q) const requires PotentialModel<Model> {
+    return system_->energy(system_->restrict(subspace_->reconstruct(q)));
+  }
   void force(VectorIn q, VectorOut f) const {
     const Vector full = system_->expand(system_->force(system_->restrict(subspace_->reconstruct(q))));
     f = subspace_->project(full);
@@ -36,6 +39,8 @@ class GalerkinSystem {
     K = project_stiffness(*subspace_, *system_, K_);
   }
 
+  /// Forces on all nodes, n · node_dim → on the unknowns.
+  AffineLoad<Matrix> project(VectorIn nodal_forces) const { return {subspace_->project(nodal_forces), {}}; }
   AffineLoad<Matrix> project(const Loads& loads) const requires(Model::node_dim == 3) {
     const AffineLoad<SparseMatrix> full = system_->project(loads);
     AffineLoad<Matrix> result{subspace_->project(system_->expand(full.force)), {}};

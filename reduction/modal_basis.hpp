@@ -37,12 +37,13 @@ template <typename System>
 VibrationModes vibration_modes(const System& system, const ModeOptions& options) {
   using Model = std::remove_cvref_t<decltype(system.model())>;
   Points positions;
-  if constexpr (requires { system.model().rest_positions(); }) positions = system.model().rest_positions();
+  if constexpr (System::node_dim == 3 && requires { system.model().rest_positions(); })
+    positions = system.model().rest_positions();
   return vibration_modes(system.rest_stiffness(), system.mass(), system.numbering(), System::node_dim,
                          system.stencils(), Model::stencil_size, positions, options);
 }
 
-/// The linear modes, nothing else: d = num_modes.
+/// The linear modes, nothing else: d = num_modes. For heat, the fields that decay slowest, with rates ω².
 struct ModalBasis {
   Index num_modes = 15;
   double tolerance = 1e-8;

@@ -58,20 +58,6 @@ struct Training {
   Vector softest_eigenvalues(const Matrix& stiffness, Index count = 5) const;
 };
 
-/// Poses as the options have them: d × T as they are, 3n × T displacements projected by the mass.
-template <Subspace S>
-Matrix poses_in_subspace(const S& subspace, const Vector& nodal_mass, const Matrix& given) {
-  if (given.rows() == subspace.dim()) return given;
-  require_size("given_poses.rows()", given.rows(), subspace.full_dim());
-  Matrix Q(subspace.dim(), given.cols());
-  for (Index t = 0; t < given.cols(); ++t) {
-    Vector u = given.col(t);
-    for (Index v = 0; v < nodal_mass.size(); ++v) u.segment<3>(3 * v) *= nodal_mass[v];
-    Q.col(t) = subspace.project(u);
-  }
-  return Q;
-}
-
 Vector softest_eigenvalues(const Matrix& stiffness, Index first, Index count);
 
 template <ForceModel Model, Subspace S>

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Vibration modes inside a subspace.
 
+#include <physics/force_model.hpp>
 #include <physics/node_numbering.hpp>
 #include <reduction/subspace.hpp>
 
@@ -8,7 +9,7 @@
 
 namespace supple {
 
-/// UᵀKU, d × d, for K over the free unknowns of `system`. \note O(d · nonzeros(K))
+/// UᵀKU, d × d, for a tangent K over the free unknowns of `system`. \note O(d · nonzeros(K))
 template <Subspace S, typename System>
 Matrix project_stiffness(const S& subspace, const System& system, const SparseMatrix& K);
 /// The same for the stiffness at rest.
@@ -17,7 +18,8 @@ Matrix project_stiffness(const S& subspace, const System& system) {
   return project_stiffness(subspace, system, system.rest_stiffness());
 }
 
-/// K̄ φ̄ = ω̄² φ̄ for the reduced stiffness K̄ (the reduced mass is I).
+/// K̄ φ̄ = ω̄² φ̄ for the reduced stiffness K̄ at rest, which is symmetric (the reduced mass is I). For heat, ω̄² are
+/// the rates at which modes decay.
 struct ReducedModes {
   Vector omega;        ///< d, ascending [rad/s]
   Matrix Phi;          ///< d × d, orthonormal
@@ -67,7 +69,8 @@ Matrix project_stiffness(const S& subspace, const System& system, const SparseMa
     for (int y = 0; y < block; ++y)
       for (Index a = 0; a < p; ++a)
         for (int x = 0; x < block; ++x) result(a * block + x, b * block + y) = sum(x * p + a, y * p + b);
-  return 0.5 * (result + result.transpose());
+  if constexpr (has_symmetric_tangent<System>()) return 0.5 * (result + result.transpose());
+  return result.transpose();  // columns of K were read as rows
 }
 
 }  // namespace supple

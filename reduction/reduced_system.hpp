@@ -15,8 +15,8 @@
 namespace supple {
 
 /// The unknowns q of u = U q under the forces F̃(q) = Σ wᵢ Uᵀ fᵢ(U q) over the selected components (Eq. 4).
-/// Energy, force and tangent come from the same components and weights, so they agree by differentiation.
-/// Nothing here touches the full mesh but loads, which read the rows of U they act on.
+/// Energy (where the model has one), force and tangent come from the same components and weights, so they agree by
+/// differentiation. Nothing here touches the full mesh but loads, which read the rows of U they act on.
 ///
 /// Components run in packs of eight: the rows of W behind a pack (3 × p for each tet) are stored so that one
 /// sweep from the cache yields the local displacements and takes the local forces back.
@@ -29,10 +29,11 @@ class ReducedSystem {
 
  public:
   using MatrixType = Matrix;
+  static constexpr bool symmetric_tangent = has_symmetric_tangent<Model>();
 
   /// \param indices, weights  the selection; weights > 0.
   /// \param rest_stiffness    UᵀK(0)U, exact, d × d: what Rayleigh damping uses.
-  /// \param nodal_mass        n [kg], for gravity.
+  /// \param nodal_mass        n [kg], for gravity in ℝ³.
   ReducedSystem(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace,
                 std::span<const Index> indices, VectorIn weights, Matrix rest_stiffness,
                 const Vector& nodal_mass)
@@ -88,7 +89,7 @@ class ReducedSystem {
   const Vector& mass() const { return mass_; }                      ///< ones: U is M-orthonormal
   const Matrix& rest_stiffness() const { return rest_stiffness_; }  ///< exact, not from the selection
 
-  double energy(VectorIn q) const {
+  double energy(VectorIn q) const requires PotentialModel<Model> {
     require_size("q", q.size(), dim());
     Pack sum(0.0);
     for (std::size_t p = 0; p < terms_.size(); ++p)
@@ -121,11 +122,11 @@ class ReducedSystem {
     return f;
   }
 
-  /// K̃ = Σ wᵢ Dᵢᵀ Kᵢ Dᵢ by products of all rows of W at once, one for each pair of axes.
+  /// K̃ = Σ wᵢ Dᵢᵀ Kᵢ Dᵢ by products of all rows of W at once, one for each pair of axes (x ≤ y if it is symmetric).
   void stiffness(VectorIn q, Matrix& K) const {
     require_size("q", q.size(), dim());
     const Index p = num_fields();
-    constexpr int pairs = block * (block + 1) / 2;
+    constexpr int pairs = symmetric_tangent ? block * (block + 1) / 2 : block * block;
     constexpr Index packs_at_once = 8;  // their rows and products stay in the cache
     constexpr Index lanes = rows * Pack::size;
     Matrix sums = Matrix::Zero(p, pairs * p);
@@ -144,7 +145,7 @@ class ReducedSystem {
           for (int r = 0; r < rows; ++r) E[r].store_unaligned(&left((c * rows + r) * Pack::size, b));
           int pair = 0;
           for (int x = 0; x < block; ++x)
-            for (int y = x; y < block; ++y, ++pair)
+            for (int y = symmetric_tangent ? x : 0; y < block; ++y, ++pair)
               for (int r = 0; r < rows; ++r) {
                 Pack sum(0.0);
                 for (int k = 0; k < rows; ++k) sum += weighted(r * block + x, k * block + y) * E[k];
@@ -157,11 +158,11 @@ class ReducedSystem {
     K.resize(dim(), dim());
     int pair = 0;
     for (int x = 0; x < block; ++x)
-      for (int y = x; y < block; ++y, ++pair)
+      for (int y = symmetric_tangent ? x : 0; y < block; ++y, ++pair)
         for (Index b = 0; b < p; ++b)
           for (Index a = 0; a < p; ++a) {
             K(a * block + x, b * block + y) = sums(a, pair * p + b);
-            K(b * block + y, a * block + x) = sums(a, pair * p + b);
+            if constexpr (symmetric_tangent) K(b * block + y, a * block + x) = sums(a, pair * p + b);
           }
   }
   Matrix stiffness(VectorIn q) const {
@@ -170,6 +171,8 @@ class ReducedSystem {
     return K;
   }
 
+  /// Forces on all nodes, n · node_dim → on the unknowns.
+  AffineLoad<Matrix> project(VectorIn nodal_forces) const { return {subspace_->project(nodal_forces), {}}; }
   AffineLoad<Matrix> project(const Loads& loads) const requires(Model::node_dim == 3) {
     check_loads(loads, subspace_->full_dim() / 3);
     AffineLoad<Matrix> result{gravity_ * loads.gravity, {}};

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Poses to train on: random points of the subspace, scaled by the object's own stiffness.
+/// \file Poses to train on: random points of the subspace, scaled by the object's own stiffness, or states observed.
 
 #include <core/random.hpp>
 #include <reduction/pose_sweep.hpp>
@@ -40,6 +40,19 @@ struct TrainingPoses {
   Index redrawn = 0;              ///< draws that were thrown away
   Index shrunk = 0;               ///< poses that were scaled down
 };
+
+/// Observed states in the coordinates of the subspace: d × T as they are, n · node_dim × T displacements (temperatures)
+/// by projection in the mass norm, Uᵀ M u.
+template <Subspace S>
+Matrix poses_in_subspace(const S& subspace, const Vector& nodal_mass, const Matrix& given) {
+  if (given.rows() == subspace.dim()) return given;
+  require_size("given_poses.rows()", given.rows(), subspace.full_dim());
+  const Index node_dim = subspace.full_dim() / nodal_mass.size();
+  const Vector mass = nodal_mass.replicate(1, node_dim).transpose().reshaped();
+  Matrix Q(subspace.dim(), given.cols());
+  for (Index t = 0; t < given.cols(); ++t) Q.col(t) = subspace.project(mass.cwiseProduct(given.col(t)));
+  return Q;
+}
 
 /// Coordinates of one random pose of unit expected rms displacement; see PoseOptions.
 class PoseSampler {

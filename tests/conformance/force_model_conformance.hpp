@@ -3,11 +3,11 @@
 ///
 ///     struct MyShell {
 ///       static MyModel make();                      // small: every component is tested
-///       static constexpr double length = 0.1;       // typical distance of neighbouring nodes [m]
+///       static constexpr double length = 0.1;       // typical distance of neighbouring nodes [m], or temperature
 ///     };
 ///     INSTANTIATE_TYPED_TEST_SUITE_P(MyShell, ForceModelConformance, MyShell);
 ///
-/// Random states displace each coordinate by up to 0.12 length; the energy must be defined there.
+/// Random states displace each coordinate by up to 0.12 length; forces (and energy) must be defined there.
 
 #include <physics/term_pack.hpp>
 #include <tests/support/near.hpp>
@@ -77,8 +77,8 @@ TYPED_TEST_P(ForceModelConformance, EveryTermIsInEquilibriumAtRest) {
         << "component " << i;
 }
 
-TYPED_TEST_P(ForceModelConformance, ForceIsTheGradientOfTheEnergy) {
-  this->for_states([&](Index i, const auto& u) {
+TYPED_TEST_P(ForceModelConformance, ForceIsTheGradientOfTheEnergyIfThereIsOne) {
+  if constexpr (PotentialModel<typename TestFixture::Model>) this->for_states([&](Index i, const auto& u) {
     Local<TestFixture::dofs> differences;
     for (int j = 0; j < TestFixture::dofs; ++j) {
       Local<TestFixture::dofs> plus = u, minus = u;
@@ -105,15 +105,23 @@ TYPED_TEST_P(ForceModelConformance, StiffnessIsTheDerivativeOfTheForce) {
   });
 }
 
-TYPED_TEST_P(ForceModelConformance, TangentIsSymmetricAndPositiveSemidefiniteAtRest) {
+TYPED_TEST_P(ForceModelConformance, TangentIsPositiveSemidefiniteAtRestAndSymmetricWherePromised) {
+  constexpr bool symmetric = has_symmetric_tangent<typename TestFixture::Model>();
+  double asymmetry = 0;
   this->for_states([&](Index i, const auto& u) {
     const LocalMatrix<TestFixture::dofs> K = this->model->stiffness(i, u);
-    EXPECT_TRUE(is_near(K, K.transpose(), this->rounding * this->stiffness_scale(i)));
+    asymmetry = std::max(asymmetry, (K - K.transpose()).norm() / this->stiffness_scale(i));
+    if (symmetric || u.isZero(0)) {
+      EXPECT_TRUE(is_near(K, K.transpose(), this->rounding * this->stiffness_scale(i)));
+    }
     if (u.isZero(0)) {
       const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(K), Eigen::EigenvaluesOnly);
       EXPECT_GE(eigen.eigenvalues().minCoeff(), -this->rounding * K.norm());
     }
   });
+  if (!symmetric) {
+    EXPECT_GT(asymmetry, 1e-3) << "symmetric, then do not deny it: it halves the work";
+  }
 }
 
 TYPED_TEST_P(ForceModelConformance, TranslationsChangeNothingWherePromised) {
@@ -125,14 +133,18 @@ TYPED_TEST_P(ForceModelConformance, TranslationsChangeNothingWherePromised) {
     static_assert(num_active_dofs<F> == F::local_dofs - F::node_dim);
     this->for_states([&](Index i, const auto& u) {
       const double K = this->stiffness_scale(i), L = TypeParam::length;
-      EXPECT_NEAR(this->model->energy(i, u + translation), this->model->energy(i, u),
-                  this->rounding * K * L * L);
+      if constexpr (PotentialModel<F>) {
+        EXPECT_NEAR(this->model->energy(i, u + translation), this->model->energy(i, u),
+                    this->rounding * K * L * L);
+      }
       EXPECT_TRUE(
           is_near(this->model->force(i, u + translation), this->model->force(i, u), this->rounding * K * L));
     });
   } else {
     static_assert(num_active_dofs<F> == F::local_dofs);
-    EXPECT_GT(this->model->energy(0, translation), this->model->energy(0, 0 * translation))
+    const Local<TestFixture::dofs> u = this->state(0, 1), moved = u + translation;
+    EXPECT_GT((this->model->force(0, moved) - this->model->force(0, u)).norm(),
+              1e-3 * this->stiffness_scale(0) * u.norm())
         << "invariant, then say so: work and storage of a reduced term fall by a node";
   }
 }
@@ -141,11 +153,11 @@ TYPED_TEST_P(ForceModelConformance, ConstCallsFromSeveralThreadsGiveTheSameBits)
   const auto& components = *this->model;
   constexpr int size = TestFixture::dofs;
   const auto evaluate = [&] {
-    Matrix all((size + 2) * components.num_components(), size);
+    Matrix all = Matrix::Zero((size + 2) * components.num_components(), size);
     for (Index i = 0; i < components.num_components(); ++i) {
       const Local<size> u = this->state(i, 1);
       auto rows = all.template middleRows<size + 2>(i * (size + 2));
-      rows.row(0).setConstant(components.energy(i, u));
+      if constexpr (PotentialModel<typename TestFixture::Model>) rows.row(0).setConstant(components.energy(i, u));
       rows.row(1) = components.force(i, u).transpose();
       rows.template bottomRows<size>() = components.stiffness(i, u);
     }
@@ -172,7 +184,6 @@ TYPED_TEST_P(ForceModelConformance, PacksEqualTheirTermsLaneByLane) {
     Local<size, Pack> u;
     for (int lane = 0; lane < Pack::size; ++lane)
       for (int j = 0; j < size; ++j) u[j].set(lane, this->state(lane, k)[j]);
-    const Pack energy = pack.energy(u);
     const Local<size, Pack> force = pack.force(u);
     const LocalMatrix<size, Pack> stiffness = pack.stiffness(u);
     for (int lane = 0; lane < Pack::size; ++lane) {
@@ -180,7 +191,9 @@ TYPED_TEST_P(ForceModelConformance, PacksEqualTheirTermsLaneByLane) {
                    std::to_string(lanes[lane]));
       const Local<size> u_lane = this->state(lane, k);
       const double K = this->stiffness_scale(lanes[lane]), L = TypeParam::length;
-      EXPECT_NEAR(energy[lane], components.energy(lanes[lane], u_lane), this->rounding * K * L * L);
+      if constexpr (PotentialModel<F>) {
+        EXPECT_NEAR(pack.energy(u)[lane], components.energy(lanes[lane], u_lane), this->rounding * K * L * L);
+      }
       Local<size> f;
       LocalMatrix<size> K_lane;
       for (int j = 0; j < size; ++j) f[j] = force[j][lane];
@@ -192,9 +205,9 @@ TYPED_TEST_P(ForceModelConformance, PacksEqualTheirTermsLaneByLane) {
 }
 
 REGISTER_TYPED_TEST_SUITE_P(ForceModelConformance, StencilNodesAreDistinctAndInRange,
-                            EveryTermIsInEquilibriumAtRest, ForceIsTheGradientOfTheEnergy,
+                            EveryTermIsInEquilibriumAtRest, ForceIsTheGradientOfTheEnergyIfThereIsOne,
                             StiffnessIsTheDerivativeOfTheForce,
-                            TangentIsSymmetricAndPositiveSemidefiniteAtRest,
+                            TangentIsPositiveSemidefiniteAtRestAndSymmetricWherePromised,
                             TranslationsChangeNothingWherePromised,
                             ConstCallsFromSeveralThreadsGiveTheSameBits, PacksEqualTheirTermsLaneByLane);
 

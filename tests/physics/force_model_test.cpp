@@ -18,6 +18,10 @@ INSTANTIATE_TYPED_TEST_SUITE_P(TetsOfAnyLaw, ForceModelConformance, AnyTets);
 INSTANTIATE_TYPED_TEST_SUITE_P(FlatShell, ForceModelConformance, FlatShell);
 INSTANTIATE_TYPED_TEST_SUITE_P(ClosedShell, ForceModelConformance, ClosedShell);
 INSTANTIATE_TYPED_TEST_SUITE_P(CurvedShell, ForceModelConformance, CurvedShell);
+INSTANTIATE_TYPED_TEST_SUITE_P(LinearHeat, ForceModelConformance, HeatBar<LinearConductivity>);
+INSTANTIATE_TYPED_TEST_SUITE_P(ExponentialHeat, ForceModelConformance, HeatBar<ExponentialConductivity>);
+INSTANTIATE_TYPED_TEST_SUITE_P(HotSurface, ForceModelConformance, HotSurface);
+INSTANTIATE_TYPED_TEST_SUITE_P(CoolingBar, ForceModelConformance, CoolingBar);
 INSTANTIATE_TYPED_TEST_SUITE_P(Springs, ForceModelConformance, SpringBar);
 INSTANTIATE_TYPED_TEST_SUITE_P(Oscillators, ForceModelConformance, DuffingSet);
 

@@ -20,3 +20,6 @@ if(TARGET gent_plugin)  # an example
   target_compile_definitions(test_plugin PRIVATE SUPPLE_PLUGINS="${PROJECT_BINARY_DIR}/plugins")
   add_dependencies(test_plugin no_plugin other_version twice gent_plugin)
 endif()
+supple_test(heat LABEL unit LINKS supple::physics
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/first_order_test.cpp ${CMAKE_CURRENT_LIST_DIR}/heat_conduction_test.cpp
+          ${CMAKE_CURRENT_LIST_DIR}/lu_solver_test.cpp)

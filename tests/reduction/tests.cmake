@@ -9,3 +9,4 @@ supple_test(editor LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/editor_test.cpp 
 supple_test(selection_study LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/selection_study_test.cpp LINKS supple::reduction)
 supple_test(modal_derivatives LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/modal_derivatives_test.cpp LINKS supple::reduction)
 supple_test(bases LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/bases_test.cpp LINKS supple::reduction)
+supple_test(heat_reduction LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/heat_test.cpp LINKS supple::reduction)

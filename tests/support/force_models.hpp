@@ -3,8 +3,11 @@
 
 #include <physics/any_model.hpp>
 #include <physics/discrete_shell.hpp>
+#include <physics/composite_model.hpp>
 #include <physics/full_system.hpp>
+#include <physics/heat_conduction.hpp>
 #include <physics/mass.hpp>
+#include <physics/surface_heat_loss.hpp>
 #include <physics/tet_elasticity.hpp>
 #include <tests/support/meshes.hpp>
 #include <tests/support/random_vectors.hpp>
@@ -77,6 +80,42 @@ struct CurvedShell {
   }
   static DiscreteShell make() { return {mesh(), ShellMaterial::from({.young = 1e6, .poisson = 0.45}, 0.02)}; }
   static Vector nodal_mass() { return lumped_mass(mesh(), 1000.0, 0.02); }
+};
+
+/// Heat in the same tets: unknowns are temperatures, so `length` is one of them [K]; k changes by up to a third within
+/// the states of the suites. A conductivity for each tet.
+template <template <typename> class Conductivity>
+struct HeatBar {
+  static constexpr double length = 100;
+  static TetMesh mesh() { return TetBar<StVenantKirchhoff>::mesh(); }
+  static HeatConduction<Conductivity> make() {
+    std::vector<Conductivity<double>> conductivities;
+    for (Index e = 0; e < mesh().num_tets(); ++e) {
+      const double k = static_cast<double>(e);
+      conductivities.push_back(Conductivity<double>::from(10 + k, 0.03 - 0.004 * k));
+    }
+    return {mesh(), conductivities};
+  }
+  static Vector nodal_mass() { return lumped_heat_capacity(mesh(), 2700, 900); }
+};
+
+/// A hot surface: k by convection and radiation, of about equal size.
+struct HotSurface {
+  static constexpr double length = 500;
+  static SurfaceHeatLoss make() {
+    const TetMesh mesh = HeatBar<LinearConductivity>::mesh();
+    return {mesh.nodes, boundary_faces(mesh), {.film = 5, .emissivity = 0.8, .ambient = 300}};
+  }
+  static Vector nodal_mass() { return HeatBar<LinearConductivity>::nodal_mass(); }
+};
+
+/// Tets that conduct and the surface that loses.
+struct CoolingBar {
+  static constexpr double length = 100;
+  static auto make() {
+    return CompositeModel(HeatBar<ExponentialConductivity>::make(), HotSurface::make());
+  }
+  static Vector nodal_mass() { return HotSurface::nodal_mass(); }
 };
 
 struct SpringBar {

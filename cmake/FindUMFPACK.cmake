@@ -1,0 +1,11 @@
+# SuiteSparse 5 ships no CMake configuration. Defines UMFPACK::UMFPACK, with the CHOLMOD it orders by.
+find_path(UMFPACK_INCLUDE_DIR umfpack.h PATH_SUFFIXES suitesparse)
+find_library(UMFPACK_LIBRARY umfpack)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(UMFPACK REQUIRED_VARS UMFPACK_LIBRARY UMFPACK_INCLUDE_DIR)
+if(UMFPACK_FOUND AND NOT TARGET UMFPACK::UMFPACK)
+  add_library(UMFPACK::UMFPACK INTERFACE IMPORTED)
+  target_include_directories(UMFPACK::UMFPACK SYSTEM INTERFACE ${UMFPACK_INCLUDE_DIR})
+  target_link_libraries(UMFPACK::UMFPACK INTERFACE ${UMFPACK_LIBRARY} CHOLMOD::CHOLMOD)
+endif()
+mark_as_advanced(UMFPACK_INCLUDE_DIR UMFPACK_LIBRARY)

@@ -1,0 +1,11 @@
+#pragma once
+/// \file Who may order a matrix. Private.
+
+#include <mutex>
+
+namespace supple {
+
+/// METIS draws from the C library's generator, which it seeds first: one caller at a time gets the same ordering.
+inline std::mutex metis_mutex;
+
+}  // namespace supple
