@@ -139,7 +139,7 @@ TEST(ForceFitting, AgreesWithTheExplicitMatrixForTetsInAnExtendedBasis) {
   const ReducedModes modes = reduced_modes(project_stiffness(basis, system));
   for (const ForceNorm norm : {ForceNorm::Mass, ForceNorm::Stiffness})
     for (const Index T : {11, 16})  // with and without free lanes
-      expect_consistent(Explicit(TetElasticity(system.model()), NodalBasis(basis), force_metric(norm, modes),
+      expect_consistent(Explicit(TetElasticity<StVenantKirchhoff>(system.model()), NodalBasis(basis), force_metric(norm, modes),
                                  poses(basis.dim(), T)));
 }
 
@@ -147,7 +147,7 @@ TEST(ForceFitting, AgreesWithTheExplicitMatrixForTetsInADenseBasis) {
   const StvkBar system = free_bar();
   const DenseBasis basis = ModalBasis{.num_modes = 11}(system);
   const ReducedModes modes = reduced_modes(project_stiffness(basis, system));
-  expect_consistent(Explicit(TetElasticity(system.model()), DenseBasis(basis),
+  expect_consistent(Explicit(TetElasticity<StVenantKirchhoff>(system.model()), DenseBasis(basis),
                              force_metric(ForceNorm::Stiffness, modes), poses(basis.dim(), 5)));
 }
 
