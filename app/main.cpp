@@ -142,7 +142,7 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
   command.add_option("--norm", c.norm, "Measure of the fitted forces [stiffness; paper: mass]")
       ->check(CLI::IsMember({"mass", "stiffness"}))
       ->group(method);
-  command.add_option("--inverted", c.inverted, "Poses with inverted tets [keep; mooney-rivlin: shrink]")
+  command.add_option("--inverted", c.inverted, "Poses with inverted tets [keep; shrink for laws that are undefined there]")
       ->check(CLI::IsMember({"keep", "shrink", "redraw"}))
       ->group(method);
   command

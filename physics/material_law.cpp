@@ -47,6 +47,8 @@ std::vector<double> MaterialLaw::values(const IsotropicModuli& moduli, const Nam
             "the material " + name + " has no parameter '" + parameter + "', expected one of " + listed(parameters));
     result[found - parameters.begin()] = value;
   }
+  const std::string wrong = objection(result);
+  require(wrong.empty(), "the material " + name + " makes no sense with these parameters: " + wrong);
   return result;
 }
 

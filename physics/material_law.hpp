@@ -4,6 +4,10 @@
 #include <physics/any_model.hpp>
 #include <physics/tet_elasticity.hpp>
 
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
@@ -23,13 +27,16 @@ struct MaterialLaw {
 
   /// Values of the parameters that agree at rest with the moduli.
   std::function<std::vector<double>(const IsotropicModuli&)> from;
+  /// What is wrong with such values; empty if nothing is.
+  std::function<std::string(const std::vector<double>&)> objection;
   /// The model of a mesh. \param materials  one row a material.  \param of_tet  the row of each tet; empty: the first.
   std::function<std::shared_ptr<const AnyModel<4>>(const TetMesh& mesh, const RowMatrix& materials,
                                                    const std::vector<std::int32_t>& of_tet)>
       tets;
 
   /// Those that agree with the moduli, with some replaced by name.
-  /// \throws std::invalid_argument for a name that the law does not have, and as from().
+  /// \throws std::invalid_argument for a name that the law does not have, for values of which rest is no stable
+  /// equilibrium, and as from().
   std::vector<double> values(const IsotropicModuli& moduli, const Named& replaced = {}) const;
 };
 
@@ -68,6 +75,22 @@ std::vector<Material<double>> materials_of_tets(Index num_tets, const RowMatrix&
   return result;
 }
 
+/// Why a material is not fit to be reduced: energy at rest not a number, stress at rest, or a tangent there that is not
+/// positive semi-definite. Empty if it is fit.
+template <template <typename> class Material>
+std::string objection_to(const Material<double>& material) {
+  const Matrix3<double> rest = Matrix3<double>::Identity();
+  if (!std::isfinite(material.energy(rest))) return "the energy at rest is not finite";
+  const Matrix3<double> P = stress(material, rest);
+  const Matrix9<double> C = tangent(material, rest);
+  if (!P.allFinite() || !C.allFinite()) return "stress or tangent at rest are not finite";
+  if (P.norm() > 1e-9 * C.norm()) return "there is stress at rest";
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(C), Eigen::EigenvaluesOnly);
+  if (eigen.eigenvalues()[0] < -1e-9 * C.norm()) return "the rest state is not stable";
+  if (C.isZero(0)) return "it resists nothing";
+  return "";
+}
+
 /// The law of a material. `Material` says, beside its formulas (see materials.hpp), the names of its parameters,
 /// `static constexpr std::array parameter_names{"mu", …}`, and how they follow from moduli, `static Material
 /// from(const IsotropicModuli&)`.
@@ -84,6 +107,14 @@ MaterialLaw make_material_law(std::string name) {
           [](const IsotropicModuli& moduli) {
             const auto values = parameters_of(Material<double>::from(moduli));
             return std::vector<double>(values.begin(), values.end());
+          },
+      .objection =
+          [](const std::vector<double>& values) {
+            std::array<double, num_material_parameters<Material>> parameters;
+            require_size("parameters of the material", static_cast<Index>(values.size()),
+                         static_cast<Index>(parameters.size()));
+            std::ranges::copy(values, parameters.begin());
+            return objection_to<Material>(material_of<Material>(parameters));
           },
       .tets =
           [](const TetMesh& mesh, const RowMatrix& materials, const std::vector<std::int32_t>& of_tet) {

@@ -17,7 +17,8 @@ class Collected final : public PluginRegistry {
     for (const MaterialLaw& other : laws) require(other.name != law.name, "it adds '" + law.name + "' twice");
     const std::vector<std::string> known = material_laws();
     require(std::ranges::count(known, law.name) == 0, "there is a material law '" + law.name + "' already");
-    require(law.from && law.tets, "the material law '" + law.name + "' lacks `from` or `tets`");
+    require(law.from && law.objection && law.tets,
+            "the material law '" + law.name + "' lacks `from`, `objection` or `tets`");
     laws.push_back(std::move(law));
   }
   std::vector<MaterialLaw> laws;

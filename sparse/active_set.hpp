@@ -46,7 +46,7 @@ class ActiveSet {
   Vector x, g;
   Index iterations = 0;
 
-  /// \param tolerance  of the gradient, relative to factor.scale().
+  /// \param gradient_tolerance  relative to factor.scale().
   ActiveSet(Factor&& unit_columns, double gradient_tolerance, Index largest_iterations)
       : factor(std::move(unit_columns)),
         x(Vector::Zero(factor.cols())),

@@ -72,6 +72,19 @@ TEST(MaterialLaws, NameWhatTheyDoNotKnow) {
   EXPECT_EQ(material_law("stvk").values({.young = 2, .poisson = 0}, {{"lambda", 7}}), (std::vector<double>{7, 1}));
 }
 
+TEST(MaterialLaws, RefuseParametersOfWhichRestIsNoStableEquilibrium) {
+  const auto refused = [](const char* law, const MaterialLaw::Named& parameters, const char* reason) {
+    EXPECT_THAT([&] { material_law(law).values({}, parameters); },
+                ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr(law), HasSubstr(reason))));
+  };
+  refused("stvk", {{"mu", -5}}, "not stable");
+  refused("stvk", {{"mu", 0}, {"lambda", 0}}, "resists nothing");
+  refused("ogden", {{"alpha1", 0}}, "energy at rest is not finite");
+  refused("neo-hookean", {{"lambda", -1e9}}, "not stable");
+  refused("corotational", {{"mu", std::numeric_limits<double>::quiet_NaN()}}, "not finite");
+  for (const std::string& law : material_laws()) EXPECT_NO_THROW((void)material_law(law).values({.young = 7, .poisson = 0.2}));
+}
+
 TEST(MaterialLaws, GiveTheModelsOfTheirTemplates) {
   TetMesh mesh = kuhn_box(2, 1, 1, 0.1);
   Solid solid = isotropic_solid(mesh, {.young = 1e5, .poisson = 0.4}, {}, "neo-hookean");

@@ -1,0 +1,30 @@
+# Installs the build, builds parts of a user's own against it, runs them, and loads one into the installed command.
+# Arguments: BUILD, SOURCE, PARTS, WORK, GENERATOR.
+file(REMOVE_RECURSE ${WORK})
+function(run)
+  execute_process(COMMAND ${ARGV} RESULT_VARIABLE code WORKING_DIRECTORY ${WORK})
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "failed: ${ARGV}")
+  endif()
+endfunction()
+file(MAKE_DIRECTORY ${WORK})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS=-O1 -DPARTS=${PARTS})
+run(${CMAKE_COMMAND} --build ${WORK}/build)
+run(${WORK}/build/own_parts)
+if(EXISTS ${WORK}/prefix/bin/supple)
+  run(${WORK}/prefix/bin/supple reduce bar:8x2x2 --fix x<=0 --plugin ${WORK}/build/libgent_plugin.so --material gent
+      --parameter limit=5 --modes 4 --poses 20 --points 30 --held-out 10 -o bar.supple)
+  run(${WORK}/prefix/bin/supple simulate bar.supple --plugin ${WORK}/build/libgent_plugin.so --time 0.05)
+endif()
+# all that a user writes for them
+set(lines 0)
+foreach(file ${PARTS}/gent.hpp ${PARTS}/wedge.hpp ${PARTS}/batched_omp.hpp ${SOURCE}/main.cpp)
+  file(STRINGS ${file} text)
+  list(LENGTH text count)
+  math(EXPR lines "${lines} + ${count}")
+endforeach()
+if(lines GREATER_EQUAL 150)
+  message(FATAL_ERROR "a material, an element, a selector and a simulation take ${lines} lines, expected below 150")
+endif()
