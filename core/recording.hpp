@@ -32,7 +32,6 @@ class Recording {
     Operation operation;
     std::array<Handle, 3> arguments;  // those not needed are −1
     double value;                     // of a constant, or an exponent
-    auto operator<=>(const Node&) const = default;
   };
 
   Handle input();

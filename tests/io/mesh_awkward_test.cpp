@@ -4,6 +4,7 @@
 #include <core/check.hpp>
 #include <io/mesh_reader.hpp>
 #include <tests/support/near.hpp>
+#include <tests/support/shared_meshes.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,15 +19,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-/// The optional collection of meshes, which is no part of the project.
-std::filesystem::path meshes() {
-  const char* given = std::getenv("SUPPLE_SHARED_MESHES");
-  return given ? given : SUPPLE_SHARED_MESHES;
-}
-
-#define SKIP_WITHOUT_MESHES() \
-  if (!std::filesystem::exists(meshes())) GTEST_SKIP() << "no collection of meshes at " << meshes()
 
 struct Decision {
   std::string file;

@@ -194,6 +194,32 @@ TEST(ModalDerivatives, AreTheSecondDerivativesOfStaticSolutions) {
   }
 }
 
+// A mode is what its inertia forces hold in place, K(0) φᵢ = ωᵢ² M φᵢ. Held by the same forces at the state q φⱼ it is
+// x(q) with K(q φⱼ) x = ωᵢ² M φᵢ, and dx/dq at q = 0 is the derivative θᵢⱼ with inertia frozen.
+TEST(ModalDerivatives, AreTheLimitOfFiniteDifferencesOfModes) {
+  const StvkBar system = clamped_bar();
+  const RestState rest = rest_state(system);
+  const VibrationModes modes = vibration_modes(system, {.num_modes = 4});
+  const ModalDerivativeVectors derivatives = modal_derivatives(rest, modes);
+  const ForceCurvature H(rest);
+  const Matrix phi = rest.restrict(modes.vectors);
+  for (std::size_t p = 0; p < derivatives.pairs.size(); ++p) {
+    const auto [i, j] = derivatives.pairs[p];
+    const Vector theta = rest.restrict(derivatives.vectors.col(p));
+    const Vector inertia = modes.omega[i] * modes.omega[i] * system.mass().cwiseProduct(phi.col(i));
+    const auto mode_at = [&](double q) -> Vector {
+      return Matrix(system.stiffness(q * phi.col(j))).partialPivLu().solve(inertia);
+    };
+    std::array<double, 2> error;
+    for (int k = 0; k < 2; ++k) {
+      const double q = 0.01 / (k + 1) / H.size(phi.col(j));
+      error[k] = ((mode_at(q) - mode_at(-q)) / (2 * q) - theta).norm() / theta.norm();
+    }
+    EXPECT_LT(error[1], 5e-3) << i << ", " << j;
+    EXPECT_NEAR(error[0] / error[1], 4, 0.4) << i << ", " << j << ": second order in the step";
+  }
+}
+
 TEST(ModalDerivatives, OfFreeObjectsAreOrthogonalToRigidMotions) {
   for (const StvkBar& system : {free_bar(), clamped_and_free_bars(), free_bars()}) {
     const RestState rest = rest_state(system);
