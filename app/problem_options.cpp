@@ -67,6 +67,15 @@ Material read_material(const JsonFields& fields, const MaterialLaw& law, Materia
   return material;
 }
 
+/// A law that an option or a file names. \throws InputError that says where.
+const MaterialLaw& named_law(const std::string& name, const std::string& where) {
+  try {
+    return material_law(name);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(where + ": " + error.what());
+  }
+}
+
 /// A law and one material for the object, and others for the regions that the file of --materials names.
 void set_materials(const ProblemOptions& problem, Solid& solid) {
   std::vector<Material> materials{base_material(problem)};
@@ -75,7 +84,7 @@ void set_materials(const ProblemOptions& problem, Solid& solid) {
   if (problem.materials) {
     const JsonFields file = JsonFields::read(*problem.materials);
     solid.law = file.text_or("law", problem.law);
-    const MaterialLaw& law = material_law(solid.law);
+    const MaterialLaw& law = named_law(solid.law, problem.materials->string());
     const Material base = materials[0] = read_material(file, law, materials[0]);
     if (const auto regions = file.object_if("regions")) {
       if (mesh.region.empty())
@@ -103,8 +112,9 @@ void set_materials(const ProblemOptions& problem, Solid& solid) {
     for (Index e = 0; e < mesh.num_tets(); ++e)
       solid.density[e] = materials[solid.material_of_tet[e]].density;
   }
+  const MaterialLaw& law = named_law(solid.law, "--material");
   for (std::size_t k = 0; k < materials.size(); ++k) {
-    const std::vector<double> row = material_law(solid.law).values(materials[k].moduli, materials[k].parameters);
+    const std::vector<double> row = law.values(materials[k].moduli, materials[k].parameters);
     solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
     for (std::size_t j = 0; j < row.size(); ++j) solid.parameters(k, j) = row[j];
   }

@@ -1,4 +1,5 @@
-// The smallest ForceModel: a chain of springs, written in one page, integrated like any other object.
+// The smallest ForceModel of your own: a chain of springs, written in one page, integrated like any other object.
+// (The library has springs between any nodes, SpringModel, whose terms also come in packs of eight.)
 //
 //   $ example_02_spring_chain
 //   a chain of 20 springs swings for 2 s; energy drifts by 0.4 % of what was exchanged

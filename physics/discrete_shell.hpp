@@ -5,6 +5,7 @@
 #include <physics/shell_material.hpp>
 #include <physics/term_pack.hpp>
 #include <physics/triangle_mesh.hpp>
+#include <physics/vector_formulas.hpp>
 
 #include <algorithm>
 #include <array>
@@ -12,29 +13,6 @@
 #include <vector>
 
 namespace supple {
-
-namespace detail {
-
-template <typename Real>
-Vector3<Real> cross(const Vector3<Real>& a, const Vector3<Real>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-template <typename Real>
-Real dot(const Vector3<Real>& a, const Vector3<Real>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <typename Real>
-Real norm(const Vector3<Real>& a) {
-  using std::sqrt;
-  return sqrt(dot(a, a));
-}
-template <typename Real>
-Real at_least(double bound, const Real& x) {
-  using std::max;
-  return max(x, Real(bound));
-}
-
-}  // namespace detail
 
 /// Discrete shells. One component an interior edge ("flap"), in order of interior_edges(); it reads the nodes
 /// a, b of the edge and c, d of the triangles (a, b, c) and (b, a, d). With θ the angle between the normals

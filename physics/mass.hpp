@@ -19,10 +19,10 @@ Vector lumped_mass(const TetMesh& mesh, double density);
 /// Heat capacity of each node [J/K], n, likewise. \param density [kg/m³], > 0. \param specific_heat [J/(kg K)], > 0.
 Vector lumped_heat_capacity(const TetMesh& mesh, double density, double specific_heat);
 
-/// Mass of each node [kg], n, of a solid of any element: the mass of each cell, shared by its nodes as the element's
-/// MassLumping says. All are > 0 and the sum is the mass of the object, by the element's mass_points.
-/// \param density [kg/m³], one for all cells or one a cell; > 0.
-/// \throws std::invalid_argument for other densities, and for cells as SolidElasticity does.
+/// Mass of each node [kg], n, of a solid of any element: the mass of each cell, shared by its nodes as the
+/// element's MassLumping says. All are > 0 and the sum is the mass of the object, by the element's
+/// mass_points. \param density [kg/m³], one for all cells or one a cell; > 0. \throws std::invalid_argument
+/// for other densities, and for cells as SolidElasticity does.
 template <SolidElement Element>
 Vector lumped_mass(const CellMesh<Element::num_nodes>& mesh, VectorIn density) {
   if (density.size() != 1) require_size("density", density.size(), mesh.num_cells());
@@ -30,9 +30,10 @@ Vector lumped_mass(const CellMesh<Element::num_nodes>& mesh, VectorIn density) {
   for (Index e = 0; e < mesh.num_cells(); ++e) {
     const double rho = density[density.size() == 1 ? 0 : e];
     if (!(rho > 0))
-      throw std::invalid_argument("density of " + std::string(Element::name) + " " + std::to_string(e) + " is " +
-                                  std::to_string(rho) + " kg/m^3, expected > 0");
-    const auto points = cell_points<Element>(cell_positions<Element>(mesh.nodes, mesh.cells, e), e, Element::mass_points);
+      throw std::invalid_argument("density of " + std::string(Element::name) + " " + std::to_string(e) +
+                                  " is " + std::to_string(rho) + " kg/m^3, expected > 0");
+    const auto points =
+        cell_points<Element>(cell_positions<Element>(mesh.nodes, mesh.cells, e), e, Element::mass_points);
     Local<Element::num_nodes> share = Local<Element::num_nodes>::Zero();
     double volume = 0;
     for (std::size_t g = 0; g < points.size(); ++g) {
@@ -40,7 +41,8 @@ Vector lumped_mass(const CellMesh<Element::num_nodes>& mesh, VectorIn density) {
       const Local<Element::num_nodes> N = Element::shape(Point(at.xi[0], at.xi[1], at.xi[2]));
       const double volume_g = at.weight * points[g].det_J;
       volume += volume_g;
-      share += volume_g * (Element::lumping == MassLumping::RowSum ? N : Local<Element::num_nodes>(N.cwiseAbs2()));
+      share +=
+          volume_g * (Element::lumping == MassLumping::RowSum ? N : Local<Element::num_nodes>(N.cwiseAbs2()));
     }
     share *= rho * volume / share.sum();
     for (int a = 0; a < Element::num_nodes; ++a) mass[mesh.cells[e][a]] += share[a];

@@ -13,16 +13,17 @@
 
 namespace supple {
 
-/// What a component of a solid is, hence what is selected when it is reduced. Either way the energy of all components
-/// is that of the solid.
+/// What a component of a solid is, hence what is selected when it is reduced. Either way the energy of all
+/// components is that of the solid.
 enum class SolidComponent {
-  Element,     ///< a cell with all its Gauss points: fewer columns to fit, and a cell reads its nodes once for all
-  GaussPoint,  ///< a single Gauss point, as in cubature: a finer choice, of as many evaluations of the material as needed
+  Element,     ///< a cell with all its Gauss points: few columns to fit
+  GaussPoint,  ///< a single Gauss point, as in cubature: a finer choice, and a material evaluated for each
 };
 
-/// A hyperelastic solid of isoparametric elements: E = Σ_e Σ_g w_g det J_g ψ(F_g), F = I + Σₐ uₐ ⊗ ∇Nₐ at the Gauss
-/// points. Component e is cell e of the mesh, or component e · P + g Gauss point g of the P points of cell e.
-/// `Material` is a class template over the scalar type (see materials.hpp), `Element` one of elements.hpp or your own.
+/// A hyperelastic solid of isoparametric elements: E = Σ_e Σ_g w_g det J_g ψ(F_g), F = I + Σₐ uₐ ⊗ ∇Nₐ at the
+/// Gauss points. Component e is cell e of the mesh, or component e · P + g Gauss point g of the P points of
+/// cell e. `Material` is a class template over the scalar type (see materials.hpp), `Element` one of
+/// elements.hpp or your own.
 template <SolidElement ElementType, template <typename> class Material,
           SolidComponent component = SolidComponent::Element>
 class SolidElasticity {
@@ -44,8 +45,9 @@ class SolidElasticity {
     static constexpr int rest_dofs = 3 * rest_nodes;
     using Gradients = Eigen::Matrix<Real, rest_nodes, 3>;
 
-    std::array<std::array<Real, rest_dofs>, num_points> gradients;  ///< of N₁ … at rest, J-th derivatives in turn [1/m]
-    std::array<Real, num_points> volume;                            ///< w_g det J_g at rest [m³]
+    std::array<std::array<Real, rest_dofs>, num_points>
+        gradients;                        ///< of N₁ … at rest, J-th derivatives in turn [1/m]
+    std::array<Real, num_points> volume;  ///< w_g det J_g at rest [m³]
     Material<Real> material;
 
     Real energy(const Local<local_dofs, Real>& u) const {
@@ -90,7 +92,9 @@ class SolidElasticity {
     }
 
     /// F at Gauss point g of the component, given the displacements u of its nodes.
-    Matrix3<Real> gradient(const Local<local_dofs, Real>& u, int g = 0) const { return gradient(edges(u), g); }
+    Matrix3<Real> gradient(const Local<local_dofs, Real>& u, int g = 0) const {
+      return gradient(edges(u), g);
+    }
 
    private:
     using Edges = Eigen::Matrix<Real, 3, rest_nodes>;
@@ -102,7 +106,9 @@ class SolidElasticity {
         for (int i = 0; i < 3; ++i) d(i, a) = u[3 + 3 * a + i] - u[i];
       return d;
     }
-    Eigen::Map<const Gradients> gradients_at(int g) const { return Eigen::Map<const Gradients>(gradients[g].data()); }
+    Eigen::Map<const Gradients> gradients_at(int g) const {
+      return Eigen::Map<const Gradients>(gradients[g].data());
+    }
     Matrix3<Real> gradient(const Edges& d, int g) const {
       const auto G = gradients_at(g);
       Matrix3<Real> F;
@@ -134,7 +140,8 @@ class SolidElasticity {
             half[iJ] = C(iJ, k) * G_b[0] + C(iJ, k + 3) * G_b[1] + C(iJ, k + 6) * G_b[2];
           for (int a = 0; a <= b; ++a)
             for (int i = 0; i < 3; ++i)
-              add(K(3 + 3 * a + i, 3 + 3 * b + k), G(a, 0) * half[i] + G(a, 1) * half[i + 3] + G(a, 2) * half[i + 6]);
+              add(K(3 + 3 * a + i, 3 + 3 * b + k),
+                  G(a, 0) * half[i] + G(a, 1) * half[i + 3] + G(a, 2) * half[i + 6]);
         }
       }
     }
@@ -143,7 +150,8 @@ class SolidElasticity {
     static void complete(LocalMatrix<local_dofs, Real>& K) {
       for (int b = 0; b < rest_nodes; ++b)
         for (int k = 0; k < 3; ++k)
-          for (int row = 3 + 3 * (b + 1); row < local_dofs; ++row) K(row, 3 + 3 * b + k) = K(3 + 3 * b + k, row);
+          for (int row = 3 + 3 * (b + 1); row < local_dofs; ++row)
+            K(row, 3 + 3 * b + k) = K(3 + 3 * b + k, row);
       for (int column = 3; column < local_dofs; ++column)
         for (int i = 0; i < 3; ++i) {
           Real sum = K(3 + i, column);
@@ -160,13 +168,14 @@ class SolidElasticity {
     }
   };
 
-  /// \param materials  one for all cells, or one a cell. \throws std::invalid_argument on another number of materials, a
-  /// node that does not exist or occurs twice in a cell, and where det J ≤ 0 at a Gauss point.
+  /// \param materials  one for all cells, or one a cell. \throws std::invalid_argument on another number of
+  /// materials, a node that does not exist or occurs twice in a cell, and where det J ≤ 0 at a Gauss point.
   SolidElasticity(const CellMesh<stencil_size>& mesh, const std::vector<Material<double>>& materials)
       : SolidElasticity(mesh.nodes, mesh.cells, materials) {}
   SolidElasticity(const CellMesh<stencil_size>& mesh, const Material<double>& material)
       : SolidElasticity(mesh, std::vector<Material<double>>{material}) {}
-  SolidElasticity(const TetMesh& mesh, const std::vector<Material<double>>& materials) requires(stencil_size == 4)
+  SolidElasticity(const TetMesh& mesh,
+                  const std::vector<Material<double>>& materials) requires(stencil_size == 4)
       : SolidElasticity(mesh.nodes, mesh.tets, materials) {}
   SolidElasticity(const TetMesh& mesh, const Material<double>& material) requires(stencil_size == 4)
       : SolidElasticity(mesh, std::vector<Material<double>>{material}) {}
@@ -179,7 +188,9 @@ class SolidElasticity {
 
   double energy(Index i, const Local<local_dofs>& u_i) const { return terms_[i].energy(u_i); }
   Local<local_dofs> force(Index i, const Local<local_dofs>& u_i) const { return terms_[i].force(u_i); }
-  LocalMatrix<local_dofs> stiffness(Index i, const Local<local_dofs>& u_i) const { return terms_[i].stiffness(u_i); }
+  LocalMatrix<local_dofs> stiffness(Index i, const Local<local_dofs>& u_i) const {
+    return terms_[i].stiffness(u_i);
+  }
 
  private:
   using Cells = std::vector<std::array<Index, stencil_size>>;
@@ -192,9 +203,11 @@ class SolidElasticity {
                 " cells, expected one for all or one each");
     terms_.reserve(count * components_per_cell);
     for (Index e = 0; e < count; ++e) {
-      const auto points = cell_points<Element>(cell_positions<Element>(nodes, cells, e), e, Element::gauss_points);
+      const auto points =
+          cell_points<Element>(cell_positions<Element>(nodes, cells, e), e, Element::gauss_points);
       for (int first = 0; first < points_per_cell; first += num_points) {
-        Term<double>& term = terms_.emplace_back(Term<double>{{}, {}, materials[materials.size() == 1 ? 0 : e]});
+        Term<double>& term =
+            terms_.emplace_back(Term<double>{{}, {}, materials[materials.size() == 1 ? 0 : e]});
         for (int g = 0; g < num_points; ++g) {
           const CellPoint<Element>& point = points[first + g];
           Eigen::Map<typename Term<double>::Gradients>(term.gradients[g].data()) =

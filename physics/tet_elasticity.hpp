@@ -5,9 +5,9 @@
 
 namespace supple {
 
-/// A hyperelastic solid of linear tetrahedra: eᵢ = Vᵢ ψ(Fᵢ), F = I + Σₐ uₐ ⊗ ∇Nₐ constant in a tet. One component a tet,
-/// in order of the mesh, a TetMesh or a CellMesh<4>. `Material` is a class template over the scalar type (see
-/// materials.hpp).
+/// A hyperelastic solid of linear tetrahedra: eᵢ = Vᵢ ψ(Fᵢ), F = I + Σₐ uₐ ⊗ ∇Nₐ constant in a tet. One
+/// component a tet, in order of the mesh, a TetMesh or a CellMesh<4>. `Material` is a class template over the
+/// scalar type (see materials.hpp).
 template <template <typename> class Material>
 using TetElasticity = SolidElasticity<LinearTet, Material>;
 

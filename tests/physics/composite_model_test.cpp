@@ -1,10 +1,12 @@
 #include <physics/composite_model.hpp>
 #include <physics/embedded_model.hpp>
+#include <physics/spring_model.hpp>
 #include <reduction/modal_basis.hpp>
 #include <reduction/reduced_system.hpp>
 #include <tests/conformance/force_model_conformance.hpp>
 #include <tests/support/bars.hpp>
 #include <tests/support/force_models.hpp>
+#include <tests/support/solids.hpp>
 
 namespace supple::test {
 namespace {
@@ -74,21 +76,88 @@ TEST(CompositeModel, CountsComponentsPartByPart) {
   EXPECT_THROW(CompositeModel(TetBar<StVenantKirchhoff>::make(), ClosedShell::make()), std::invalid_argument);
 }
 
+/// With all components at weight one the reduced force is that of the full system, projected.
+template <typename Model>
+void expect_galerkin_projection(const FullSystem<Model>& system) {
+  const auto subspace = std::make_shared<const NodalBasis>(ExtendedModalBasis{.num_modes = 5}(system));
+  const Index m = system.model().num_components();
+  const ReducedSystem reduced(system.shared_model(), subspace, all_components(m), Vector::Ones(m),
+                              project_stiffness(*subspace, system), system.nodal_mass());
+  const Vector q = random_vector(subspace->dim(), 0.01, 9);
+  Vector f(subspace->dim());
+  reduced.force(q, f);
+  const Vector exact = subspace->project(system.expand(system.force(system.restrict(subspace->reconstruct(q)))));
+  EXPECT_TRUE(is_near(f, exact, 1e-10 * exact.norm()));
+}
+
 TEST(CompositeModel, IsReducedLikeAnyModel) {
   const TetMesh mesh = bar_mesh();
   const auto force = std::make_shared<const CompositeModel<TetElasticity<StVenantKirchhoff>, EmbeddedModel<DiscreteShell>>>(
       TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
       skin_of(mesh, ShellMaterial::from({.young = 1e7, .poisson = 0.4}, 0.002)));
   const FullSystem system(force, lumped_mass(mesh, 1000.0), bar_end(mesh));
-  const auto subspace = std::make_shared<const NodalBasis>(ExtendedModalBasis{.num_modes = 5}(system));
-  const Index m = force->num_components();
-  const ReducedSystem reduced(force, subspace, all_components(m), Vector::Ones(m), project_stiffness(*subspace, system),
-                              system.nodal_mass());
-  const Vector q = random_vector(subspace->dim(), 0.01, 9);
-  Vector f(subspace->dim());
-  reduced.force(q, f);
-  const Vector exact = subspace->project(system.expand(system.force(system.restrict(subspace->reconstruct(q)))));
-  EXPECT_TRUE(is_near(f, exact, 1e-10 * exact.norm()));
+  expect_galerkin_projection(system);
+}
+
+/// Hexes on the left half of an irregular box, tets on the right, springs from end to end.
+struct MixedBox {
+  static constexpr double length = 0.1;
+  TetMesh all = perturbed(kuhn_box(4, 2, 2, length), 0.1 * length, 14);
+  HexMesh hexes{all.nodes, {}};
+  TetMesh tets{all.nodes, {}};
+  std::vector<SpringModel::Ends> springs;
+
+  MixedBox() {
+    const HexMesh cubes = hex_box(4, 2, 2, {1, 1, 1});  // numbers nodes and cells alike
+    for (Index cube = 0; cube < cubes.num_cells(); ++cube) {
+      if (cube % 4 < 2)
+        hexes.cells.push_back(cubes.cells[cube]);
+      else
+        tets.tets.insert(tets.tets.end(), all.tets.begin() + 6 * cube, all.tets.begin() + 6 * (cube + 1));
+    }
+    for (Index v = 0; v < all.num_nodes(); v += 5) springs.push_back({v, v + 4});
+  }
+
+  template <SolidComponent component>
+  auto hex_model() const {
+    return SolidElasticity<TrilinearHex, MooneyRivlin, component>(hexes, MooneyRivlin<double>::from({.young = 3e5}));
+  }
+  auto tet_model() const {
+    return TetElasticity<StVenantKirchhoff>(tets, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.3}));
+  }
+  SpringModel spring_model() const { return {all.nodes, springs, 500.0}; }
+  Vector mass() const { return lumped_mass<TrilinearHex>(hexes, 1000.0) + lumped_mass(tets, 700.0); }
+  std::vector<Index> fixed() const {
+    return nodes_where(all, [](const Point& x) { return x[0] < length / 2; });
+  }
+};
+
+TEST(CompositeModel, AddsUpHexesTetsAndSprings) {
+  const MixedBox box;
+  const Vector mass = box.mass();
+  const CompositeModel model(box.hex_model<SolidComponent::Element>(), box.tet_model(), box.spring_model());
+  EXPECT_EQ(model.num_components(), 8 + 48 + 9);
+  const FullSystem whole(model, mass, box.fixed());
+  const FullSystem hexes(box.hex_model<SolidComponent::Element>(), mass, box.fixed());
+  const FullSystem tets(box.tet_model(), mass, box.fixed());
+  const FullSystem springs(box.spring_model(), mass, box.fixed());
+  const Vector u = random_vector(whole.dim(), 0.008, 4);
+  const double energy = hexes.energy(u) + tets.energy(u) + springs.energy(u);
+  EXPECT_NEAR(whole.energy(u), energy, 1e-12 * energy);
+  const Vector force = hexes.force(u) + tets.force(u) + springs.force(u);
+  EXPECT_TRUE(is_near(whole.force(u), force, 1e-12 * force.norm()));
+  const Matrix K = Matrix(hexes.stiffness(u)) + Matrix(tets.stiffness(u)) + Matrix(springs.stiffness(u));
+  EXPECT_TRUE(is_near(Matrix(whole.stiffness(u)), K, 1e-12 * K.norm()));
+}
+
+TEST(CompositeModel, OfMixedMeshesIsReducedByCellsAndByGaussPoints) {
+  const MixedBox box;
+  expect_galerkin_projection(
+      FullSystem(CompositeModel(box.hex_model<SolidComponent::Element>(), box.tet_model(), box.spring_model()),
+                 box.mass(), box.fixed()));
+  expect_galerkin_projection(
+      FullSystem(CompositeModel(box.hex_model<SolidComponent::GaussPoint>(), box.tet_model(), box.spring_model()),
+                 box.mass(), box.fixed()));
 }
 
 }  // namespace

@@ -141,12 +141,13 @@ TYPED_TEST(ElementTest, GaussPointsOfACellAddUpToTheCell) {
   }
 }
 
-// Patch test, first half: under an affine field F is the same everywhere, inner nodes are in equilibrium and the
-// forces on the boundary have the moments Σ f_v ⊗ X_v = V P.
+// Patch test, first half: under an affine field F is the same everywhere, inner nodes are in equilibrium and
+// the forces on the boundary have the moments Σ f_v ⊗ X_v = V P.
 TYPED_TEST(ElementTest, AffineFieldsGiveConstantStressAndInteriorEquilibrium) {
   const auto mesh = this->straight_box(3);
   const auto material = MooneyRivlin<double>::from(moduli);
-  const FullSystem system(SolidElasticity<TypeParam, MooneyRivlin>(mesh, material), lumped_mass<TypeParam>(mesh, 1.0));
+  const FullSystem system(SolidElasticity<TypeParam, MooneyRivlin>(mesh, material),
+                          lumped_mass<TypeParam>(mesh, 1.0));
   const Mat3 F = random_rotation(2) * (Mat3::Identity() + Mat3(random_matrix(3, 3, 0.2, 31)));
   const Vector u = affine_displacement(mesh.nodes, F, {0.1, 0, 0});
   const double volume = lumped_mass<TypeParam>(mesh, 1.0).sum();
@@ -164,15 +165,18 @@ TYPED_TEST(ElementTest, AffineFieldsGiveConstantStressAndInteriorEquilibrium) {
     for (int a = 0; a < TypeParam::num_nodes; ++a)
       u_e.template segment<3>(3 * a) = u.segment<3>(3 * mesh.cells[e][a]);
     for (int g = 0; g < Model::num_points; ++g)
-      EXPECT_TRUE(is_near(system.model().term(e).gradient(u_e, g), F, rounding)) << "cell " << e << ", point " << g;
+      EXPECT_TRUE(is_near(system.model().term(e).gradient(u_e, g), F, rounding))
+          << "cell " << e << ", point " << g;
   }
 }
 
-// Patch test, second half: given affine displacements at the boundary, the affine field is what the solver finds.
+// Patch test, second half: given affine displacements at the boundary, the affine field is what the solver
+// finds.
 TYPED_TEST(ElementTest, AffineBoundaryDisplacementsHaveTheAffineSolution) {
   const auto mesh = this->straight_box(2);
-  const FullSystem system(SolidElasticity<TypeParam, StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from(moduli)),
-                          lumped_mass<TypeParam>(mesh, 1000.0));
+  const FullSystem system(
+      SolidElasticity<TypeParam, StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from(moduli)),
+      lumped_mass<TypeParam>(mesh, 1000.0));
   const Mat3 F = Mat3::Identity() + Mat3(random_matrix(3, 3, 0.08, 32));
   const Vector u = affine_displacement(mesh.nodes, F);
   const NodeNumbering interior(mesh.num_nodes(), this->box_boundary(2));
@@ -205,7 +209,9 @@ struct SmoothField {
     double product = 1;
     for (int x = 0; x < 3; ++x) {
       const int order = (J == x) + (L == x);
-      product *= order == 0 ? std::sin(pi * X[x]) : order == 1 ? pi * std::cos(pi * X[x]) : -pi * pi * std::sin(pi * X[x]);
+      product *= order == 0   ? std::sin(pi * X[x])
+                 : order == 1 ? pi * std::cos(pi * X[x])
+                              : -pi * pi * std::sin(pi * X[x]);
     }
     return product;
   }
@@ -256,8 +262,8 @@ void for_fine_points(const CellMesh<Element::num_nodes>& mesh, const Visit& visi
 template <typename Element>
 double displacement_error(Index n) {
   auto mesh = box_of<Element>({n, n, n}, 1.0 / static_cast<double>(n));
-  const std::vector<Index> boundary = nodes_where(
-      mesh, [](const Point& x) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; });
+  const std::vector<Index> boundary =
+      nodes_where(mesh, [](const Point& x) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; });
   for (Index v = 0; v < mesh.num_nodes(); ++v) {
     const Point X = mesh.nodes.row(v);
     mesh.nodes.row(v) += 0.5 * SmoothField{{-0.04, 0.05, 0.06}}(X).transpose();
@@ -265,8 +271,8 @@ double displacement_error(Index n) {
   straighten(mesh);
   const auto material = StVenantKirchhoff<double>::from(moduli);
   const SmoothField exact;
-  const FullSystem system(SolidElasticity<Element, StVenantKirchhoff>(mesh, material), lumped_mass<Element>(mesh, 1.0),
-                          boundary);
+  const FullSystem system(SolidElasticity<Element, StVenantKirchhoff>(mesh, material),
+                          lumped_mass<Element>(mesh, 1.0), boundary);
   Vector load = Vector::Zero(3 * mesh.num_nodes());
   for_fine_points<Element>(mesh, [&](const auto& cell, const auto& N, const Point& X, double volume) {
     const Point b = body_force(material, exact, X);
@@ -295,7 +301,8 @@ std::array<double, 2> convergence_orders(Index coarsest) {
   return {std::log2(errors[0] / errors[1]), std::log2(errors[1] / errors[2])};
 }
 
-// Finite strains (|∇u| up to 0.22) under a manufactured force; linear shape functions err by h², quadratic ones by h³.
+// Finite strains (|∇u| up to 0.22) under a manufactured force; linear shape functions err by h², quadratic
+// ones by h³.
 TEST(Elements, DisplacementsOfLinearTetsConvergeWithOrderTwo) {
   const auto [coarse, fine] = convergence_orders<LinearTet>(4);
   EXPECT_NEAR(fine, 2, 0.1) << "before: " << coarse;
@@ -328,7 +335,8 @@ TYPED_TEST(ElementTest, LumpedMassesKeepTheCentreOfMass) {
   auto mesh = this->irregular_inside(3);
   straighten(mesh);  // of curved quadratic tets it moves a little
   const Vector mass = lumped_mass<TypeParam>(mesh, 1.0);
-  EXPECT_TRUE(is_near(mesh.nodes.transpose() * mass / mass.sum(), Point::Constant(1.5 * edge), rounding * edge));
+  EXPECT_TRUE(
+      is_near(mesh.nodes.transpose() * mass / mass.sum(), Point::Constant(1.5 * edge), rounding * edge));
 }
 
 TEST(Elements, EveryTypeOfTetSharesItsMassAsDocumented) {
@@ -365,15 +373,18 @@ TYPED_TEST(ElementTest, CellsThatCannotBeAreRefusedByName) {
   EXPECT_EQ(refusal(box), "nothing thrown");
   auto bad = box;
   bad.cells[last][1] = box.num_nodes();
-  EXPECT_THAT(refusal(bad), testing::HasSubstr(name + " names node " + std::to_string(box.num_nodes()) + ","));
+  EXPECT_THAT(refusal(bad),
+              testing::HasSubstr(name + " names node " + std::to_string(box.num_nodes()) + ","));
   bad.cells[last][1] = -1;
   EXPECT_THAT(refusal(bad), testing::HasSubstr(name + " names node -1,"));
   bad.cells[last][1] = box.cells[last][3];
-  EXPECT_THAT(refusal(bad), testing::HasSubstr(name + " names node " + std::to_string(box.cells[last][3]) + " twice"));
+  EXPECT_THAT(refusal(bad),
+              testing::HasSubstr(name + " names node " + std::to_string(box.cells[last][3]) + " twice"));
   bad = box;
   bad.nodes.col(0) *= -1;
-  EXPECT_THAT(refusal(bad), testing::AllOf(testing::HasSubstr(std::string(TypeParam::name) + " 0 has det J = "),
-                                           testing::HasSubstr("Gauss point 0")));
+  EXPECT_THAT(refusal(bad),
+              testing::AllOf(testing::HasSubstr(std::string(TypeParam::name) + " 0 has det J = "),
+                             testing::HasSubstr("Gauss point 0")));
   bad = box;
   bad.nodes.col(2).setZero();
   EXPECT_THAT(refusal(bad), testing::HasSubstr("has det J = "));
@@ -389,8 +400,9 @@ TYPED_TEST(ElementTest, CellsThatCannotBeAreRefusedByName) {
 TEST(Elements, TheGaussPointAtFaultIsNamed) {
   HexMesh hex = hex_box(1, 1, 1, {1, 1, 1});
   hex.nodes.row(hex.cells[0][6]) << 0.1, 0.1, 0.1;  // pushed through its neighbours
-  const std::string message = message_of(
-      [&] { SolidElasticity<TrilinearHex, StVenantKirchhoff>(hex, StVenantKirchhoff<double>::from(moduli)); });
+  const std::string message = message_of([&] {
+    SolidElasticity<TrilinearHex, StVenantKirchhoff>(hex, StVenantKirchhoff<double>::from(moduli));
+  });
   EXPECT_THAT(message, testing::AllOf(testing::HasSubstr("hex 0"), testing::HasSubstr("at Gauss point 6")));
 }
 
@@ -429,7 +441,8 @@ TEST(CellMesh, QuadraticMeshHasOneNodeAmidEachEdge) {
   }
   Index next = corners.num_nodes();  // numbered in order of the corners of their edges
   for (const auto& [a, b] : edges)
-    EXPECT_TRUE(is_near(mesh.nodes.row(next++), (corners.nodes.row(a) + corners.nodes.row(b)) / 2, rounding * edge));
+    EXPECT_TRUE(
+        is_near(mesh.nodes.row(next++), (corners.nodes.row(a) + corners.nodes.row(b)) / 2, rounding * edge));
 }
 
 }  // namespace

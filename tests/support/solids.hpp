@@ -35,8 +35,10 @@ void straighten(CellMesh<n>&) {}
 
 /// The same with every node moved at random: hexes with curved faces, quadratic tets with curved edges.
 template <typename Element>
-CellMesh<Element::num_nodes> irregular_box(const std::array<Index, 3>& cells, double edge, std::uint64_t seed = 21) {
-  return perturbed(box_of<Element>(cells, edge), (std::same_as<Element, QuadraticTet> ? 0.05 : 0.1) * edge, seed);
+CellMesh<Element::num_nodes> irregular_box(const std::array<Index, 3>& cells, double edge,
+                                           std::uint64_t seed = 21) {
+  return perturbed(box_of<Element>(cells, edge), (std::same_as<Element, QuadraticTet> ? 0.05 : 0.1) * edge,
+                   seed);
 }
 
 /// A few irregular cells, a material for each: for conformance suites.
@@ -47,7 +49,8 @@ struct CellBar {
   static constexpr bool is_quadratic = std::same_as<Element, QuadraticTet>;
   static constexpr double length = 0.1;  // a quadratic tet has two nodes an edge
   static CellMesh<Element::num_nodes> mesh() {
-    return irregular_box<Element>({std::same_as<Element, TrilinearHex> ? 2 : 1, 1, 1}, (is_quadratic ? 2 : 1) * length);
+    return irregular_box<Element>({std::same_as<Element, TrilinearHex> ? 2 : 1, 1, 1},
+                                  (is_quadratic ? 2 : 1) * length);
   }
   static Model make() {
     std::vector<Material<double>> materials;

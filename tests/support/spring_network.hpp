@@ -11,7 +11,8 @@
 
 namespace supple::test {
 
-/// Straight springs between pairs of nodes: eᵢ = ½ k (‖x_b − x_a‖ − Lᵢ)², unstressed at rest.
+/// Straight springs between pairs of nodes: eᵢ = ½ k (‖x_b − x_a‖ − Lᵢ)², unstressed at rest. The library's SpringModel
+/// comes in packs; this one shows that models need not, and is a second formula to hold that one against.
 class SpringNetwork {
  public:
   static constexpr int stencil_size = 2;
@@ -57,13 +58,18 @@ class SpringNetwork {
 };
 static_assert(ForceModel<SpringNetwork>);
 
-/// A spring at each edge of a mesh.
-inline SpringNetwork edge_springs(const TetMesh& mesh, double stiffness) {
+/// The edges of a mesh, each once.
+inline std::vector<std::array<Index, 2>> mesh_edges(const TetMesh& mesh) {
   std::set<std::array<Index, 2>> edges;
   for (const Tet& tet : mesh.tets)
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b < a; ++b) edges.insert({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
-  return {mesh.nodes, {edges.begin(), edges.end()}, stiffness};
+  return {edges.begin(), edges.end()};
+}
+
+/// A spring at each edge of a mesh.
+inline SpringNetwork edge_springs(const TetMesh& mesh, double stiffness) {
+  return {mesh.nodes, mesh_edges(mesh), stiffness};
 }
 
 /// Independent nodes, each held by eᵢ = ½ k |u|² + ¼ c |u|⁴ (c = 0: a harmonic oscillator). Not translation
