@@ -3,8 +3,8 @@
 #include <physics/material_response.hpp>
 #include <physics/neo_hookean.hpp>
 #include <physics/ogden.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

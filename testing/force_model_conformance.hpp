@@ -10,8 +10,8 @@
 /// Random states displace each coordinate by up to 0.12 length; forces (and energy) must be defined there.
 
 #include <physics/term_pack.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
