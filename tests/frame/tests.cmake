@@ -2,6 +2,13 @@ add_test(NAME frame.includes_run_downward
   COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -P ${CMAKE_CURRENT_LIST_DIR}/check_includes.cmake)
 set_tests_properties(frame.includes_run_downward PROPERTIES LABELS unit)
 
+# What is wrong with a model of a user's own, the compiler says in words and first.
+add_test(NAME frame.concepts_fail_in_words
+  COMMAND ${CMAKE_COMMAND} -DCOMPILER=${CMAKE_CXX_COMPILER} -DINCLUDE=${PROJECT_SOURCE_DIR}
+          -DEIGEN=$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>
+          -DSOURCES=${CMAKE_CURRENT_LIST_DIR}/wrong -P ${CMAKE_CURRENT_LIST_DIR}/concept_messages.cmake)
+set_tests_properties(frame.concepts_fail_in_words PROPERTIES LABELS slow TIMEOUT 1200)
+
 # The installed package serves consumers compiled for other instruction sets than its own. Sanitized libraries need
 # sanitized consumers, so this is for the plain builds.
 if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
