@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   if (sizes.empty()) sizes = {50, 100, 200};
 
   const Index d = 45, T = 100, held_out = 50, m = 12000;
-  const DenseProblem all = testing::force_fitting_on_a_cube(d / 3, T + held_out, m, 1);
+  const DenseProblem all = test::force_fitting_on_a_cube(d / 3, T + held_out, m, 1);
   const DenseProblem training(all.matrix().topRows(d * T), all.rhs().head(d * T), d);
   const Matrix A_held_out = all.matrix().bottomRows(d * held_out);
   const Vector b_held_out = all.rhs().tail(d * held_out);

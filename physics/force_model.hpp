@@ -12,7 +12,7 @@ namespace supple {
 /// node after node. For deformable objects u are displacements [m] and f forces [N]; for heat, temperatures [K] and
 /// heat flows [W]. Units below are those of deformable objects.
 ///
-/// A model also promises, and tests/conformance checks: Kᵢ = ∂fᵢ/∂uᵢ, symmetric unless the model says otherwise (see
+/// A model also promises, and supple::testing checks: Kᵢ = ∂fᵢ/∂uᵢ, symmetric unless the model says otherwise (see
 /// has_symmetric_tangent), symmetric and positive semi-definite at rest in any case; fᵢ(0) = 0 (the rest state is an
 /// equilibrium of every term); stencil nodes distinct and in range; const calls safe from several threads.
 template <typename F>

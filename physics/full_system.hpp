@@ -5,6 +5,7 @@
 #include <core/pack.hpp>
 #include <core/parallel.hpp>
 #include <physics/dynamical_system.hpp>
+#include <physics/explain_force_model.hpp>
 #include <physics/node_numbering.hpp>
 #include <physics/term_pack.hpp>
 
@@ -17,8 +18,10 @@ namespace supple {
 /// are the displacements (temperatures) of the free nodes, interleaved (x₀ y₀ z₀ x₁ …); expand() and restrict() go to
 /// and from vectors over all nodes. Forces and tangents are evaluated in packs of eight components; sums have a fixed
 /// order, so results do not depend on the number of threads.
-template <ForceModel Model>
+template <typename Model>
 class FullSystem {
+  static_assert(explain_force_model<Model>());
+
  public:
   using MatrixType = SparseMatrix;
   static constexpr int node_dim = Model::node_dim;

@@ -4,6 +4,7 @@
 #include <core/check.hpp>
 #include <physics/cell_mesh.hpp>
 #include <physics/elements.hpp>
+#include <physics/explain_material.hpp>
 #include <physics/material_response.hpp>
 #include <physics/term_pack.hpp>
 
@@ -27,6 +28,8 @@ enum class SolidComponent {
 template <SolidElement ElementType, template <typename> class Material,
           SolidComponent component = SolidComponent::Element>
 class SolidElasticity {
+  static_assert(explain_material<Material>());
+
  public:
   using Element = ElementType;
   static constexpr int stencil_size = Element::num_nodes;

@@ -2,6 +2,7 @@
 /// \file The main job for force models, subspaces and selectors of one's own types.
 
 #include <reduction/reduce_stages.hpp>
+#include <sparse/explain_subset_selector.hpp>
 #include <sparse/nn_sp.hpp>
 
 #include <memory>
@@ -30,9 +31,10 @@ struct Reduction {
 /// Poses with inverted components are shrunk, unless the options say otherwise. Of the options, those of the
 /// subspace and the name of the selector are not read.
 /// \throws as reduce() of a Body.
-template <ForceModel Model, Subspace S, SubsetSelector Selector = NnSp>
+template <ForceModel Model, Subspace S, typename Selector = NnSp>
 Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std::shared_ptr<const S> subspace,
                            const Selector& select = {}, const ReduceOptions& options = {}, const Progress& progress = {}) {
+  static_assert(explain_subset_selector<Selector>());
   check(options);
   const Stopwatch total;
   Reduction<Model, S> result;

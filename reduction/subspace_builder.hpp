@@ -10,7 +10,7 @@
 namespace supple {
 
 /// A small object, called with a system, that answers with a subspace of it. It also promises, and
-/// tests/conformance checks: UᵀMU = I; rows of fixed nodes are zero; equal inputs give equal bits.
+/// supple::testing checks: UᵀMU = I; rows of fixed nodes are zero; equal inputs give equal bits.
 template <typename B, typename S>  // "B for S"
 concept SubspaceBuilderFor = DynamicalSystem<S> && requires(const B& build, const S& system) {
   { build(system) } -> Subspace;

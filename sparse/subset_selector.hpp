@@ -20,7 +20,7 @@ struct Fitting {
 static_assert(FittingProblem<Fitting>);
 }  // namespace archetype
 
-/// A selector also promises, and tests/conformance checks: at most s indices, ascending, each a candidate or
+/// A selector also promises, and supple::testing checks: at most s indices, ascending, each a candidate or
 /// must-keep; weights > 0 (must-keep: ≥ 0); the residual in the report is that of a direct evaluation; equal
 /// requests give equal bits, whatever the number of threads; std::invalid_argument for a request that makes
 /// no sense, InputError for a column or right-hand side that is not finite.

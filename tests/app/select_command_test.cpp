@@ -15,10 +15,6 @@ namespace supple::test {
 namespace {
 
 using nlohmann::json;
-using supple::testing::gaussian;
-using supple::testing::planted_weights;
-using supple::testing::random_subset;
-using supple::testing::uniform;
 using ::testing::HasSubstr;
 
 /// A small problem in files: A.npy with 60 × 40 numbers, b.npy near the sum of its columns.

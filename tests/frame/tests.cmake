@@ -7,6 +7,13 @@ add_test(NAME frame.tutorials_show_code_that_runs
           -P ${CMAKE_CURRENT_LIST_DIR}/check_docs.cmake)
 set_tests_properties(frame.tutorials_show_code_that_runs PROPERTIES LABELS unit)
 
+# What is wrong with a model of a user's own, the compiler says in words and first.
+add_test(NAME frame.concepts_fail_in_words
+  COMMAND ${CMAKE_COMMAND} -DCOMPILER=${CMAKE_CXX_COMPILER} -DINCLUDE=${PROJECT_SOURCE_DIR}
+          -DEIGEN=$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>
+          -DSOURCES=${CMAKE_CURRENT_LIST_DIR}/wrong -P ${CMAKE_CURRENT_LIST_DIR}/concept_messages.cmake)
+set_tests_properties(frame.concepts_fail_in_words PROPERTIES LABELS slow TIMEOUT 1200)
+
 # The installed package serves consumers compiled for other instruction sets than its own. Sanitized libraries need
 # sanitized consumers, so this is for the plain builds.
 if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")

@@ -1,8 +1,8 @@
 #include <core/check.hpp>
 #include <core/random.hpp>
 #include <io/matrix_file.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 
 #include <core/check.hpp>
 #include <io/mesh_reader.hpp>
-#include <tests/support/near.hpp>
+#include <testing/near.hpp>
 #include <tests/support/shared_meshes.hpp>
 
 #include <gmock/gmock.h>

@@ -4,7 +4,7 @@
 #include <io/vtu_writer.hpp>
 #include <tests/io/mesh_files.hpp>
 #include <tests/support/meshes.hpp>
-#include <tests/support/near.hpp>
+#include <testing/near.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

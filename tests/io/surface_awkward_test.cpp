@@ -4,7 +4,7 @@
 #include <core/check.hpp>
 #include <io/surface_reader.hpp>
 #include <physics/discrete_shell.hpp>
-#include <tests/support/near.hpp>
+#include <testing/near.hpp>
 #include <tests/support/shared_meshes.hpp>
 
 #include <gmock/gmock.h>

@@ -2,7 +2,7 @@
 #include <io/surface_reader.hpp>
 #include <tests/io/surface_files.hpp>
 #include <tests/support/meshes.hpp>
-#include <tests/support/near.hpp>
+#include <testing/near.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include <physics/spring_model.hpp>
 #include <reduction/modal_basis.hpp>
 #include <reduction/reduced_system.hpp>
-#include <tests/conformance/force_model_conformance.hpp>
+#include <testing/force_model_conformance.hpp>
 #include <tests/support/bars.hpp>
 #include <tests/support/force_models.hpp>
 #include <tests/support/solids.hpp>

@@ -5,8 +5,8 @@
 #include <physics/newton.hpp>
 #include <tests/support/force_models.hpp>
 #include <tests/support/meshes.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include <tests/conformance/dynamical_system_conformance.hpp>
+#include <testing/dynamical_system_conformance.hpp>
 #include <tests/support/force_models.hpp>
 
 namespace supple::test {

@@ -4,8 +4,8 @@
 #include <physics/newton.hpp>
 #include <physics/solid_elasticity.hpp>
 #include <tests/support/boundary_values.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 #include <tests/support/solids.hpp>
 
 #include <Eigen/Dense>

@@ -2,7 +2,7 @@
 #include <physics/fung.hpp>
 #include <physics/neo_hookean.hpp>
 #include <physics/ogden.hpp>
-#include <tests/conformance/force_model_conformance.hpp>
+#include <testing/force_model_conformance.hpp>
 #include <tests/support/force_models.hpp>
 
 namespace supple::test {

@@ -5,8 +5,8 @@
 #include <physics/tet_elasticity.hpp>
 #include <tests/support/force_models.hpp>
 #include <tests/support/meshes.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 #include <tests/support/spring_network.hpp>
 
 #include <Eigen/Dense>

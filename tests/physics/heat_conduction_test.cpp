@@ -1,7 +1,7 @@
 #include <physics/surface_heat_loss.hpp>
 #include <tests/support/heat.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <gtest/gtest.h>
 

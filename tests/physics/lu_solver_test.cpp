@@ -2,8 +2,8 @@
 #include <physics/lu_solver.hpp>
 #include <physics/newton.hpp>
 #include <tests/support/heat.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <gtest/gtest.h>
 

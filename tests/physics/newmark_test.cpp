@@ -4,8 +4,8 @@
 #include <physics/newmark.hpp>
 #include <physics/tet_elasticity.hpp>
 #include <tests/support/meshes.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 #include <tests/support/spring_network.hpp>
 
 #include <Eigen/Eigenvalues>

@@ -3,10 +3,10 @@
 #include <physics/full_system.hpp>
 #include <physics/newton.hpp>
 #include <physics/spring_model.hpp>
-#include <tests/conformance/force_model_conformance.hpp>
+#include <testing/force_model_conformance.hpp>
 #include <tests/support/meshes.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 #include <tests/support/spring_network.hpp>
 
 #include <Eigen/Dense>

@@ -1,6 +1,6 @@
 #include <physics/rotation.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include <tests/conformance/force_model_conformance.hpp>
+#include <testing/force_model_conformance.hpp>
 #include <tests/support/solids.hpp>
 
 namespace supple::test {

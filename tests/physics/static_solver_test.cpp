@@ -3,7 +3,7 @@
 #include <physics/static_solver.hpp>
 #include <physics/tet_elasticity.hpp>
 #include <tests/support/meshes.hpp>
-#include <tests/support/near.hpp>
+#include <testing/near.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>

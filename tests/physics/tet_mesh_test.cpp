@@ -1,7 +1,7 @@
 #include <physics/tet_mesh.hpp>
 #include <tests/support/meshes.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>

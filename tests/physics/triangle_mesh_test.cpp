@@ -1,7 +1,7 @@
 #include <physics/mass.hpp>
 #include <physics/tet_mesh.hpp>
 #include <tests/support/meshes.hpp>
-#include <tests/support/near.hpp>
+#include <testing/near.hpp>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>

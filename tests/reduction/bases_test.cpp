@@ -3,7 +3,7 @@
 #include <reduction/pca_basis.hpp>
 #include <reduction/skinning_modes.hpp>
 #include <reduction/tall_qr.hpp>
-#include <tests/conformance/subspace_conformance.hpp>
+#include <testing/subspace_builder_conformance.hpp>
 #include <tests/support/bars.hpp>
 #include <tests/support/outside.hpp>
 #include <tests/support/plates.hpp>
@@ -26,7 +26,7 @@ struct PcaCase {
 };
 using PcaCases =
     testing::Types<PcaCase<clamped_bar>, PcaCase<free_bar>, PcaCase<free_bars>, PcaCase<held_plate>>;
-INSTANTIATE_TYPED_TEST_SUITE_P(Pca, SubspaceConformance, PcaCases);
+INSTANTIATE_TYPED_TEST_SUITE_P(Pca, SubspaceBuilderConformance, PcaCases);
 
 template <auto system, Index num_weights>
 struct SkinningCase {
@@ -36,7 +36,7 @@ struct SkinningCase {
 using SkinningCases = testing::Types<SkinningCase<clamped_bar, 4>, SkinningCase<free_bar, 4>,
                                      SkinningCase<free_bars, 5>, SkinningCase<clamped_and_free_bars, 3>,
                                      SkinningCase<held_plate, 3>, SkinningCase<free_plate, 3>>;
-INSTANTIATE_TYPED_TEST_SUITE_P(Skinning, SubspaceConformance, SkinningCases);
+INSTANTIATE_TYPED_TEST_SUITE_P(Skinning, SubspaceBuilderConformance, SkinningCases);
 
 template <auto system>
 struct AffineCase {
@@ -45,7 +45,7 @@ struct AffineCase {
 };
 using AffineCases = testing::Types<AffineCase<free_bar>, AffineCase<free_bars>,
                                    AffineCase<clamped_and_free_bars>, AffineCase<free_plate>>;
-INSTANTIATE_TYPED_TEST_SUITE_P(Affine, SubspaceConformance, AffineCases);
+INSTANTIATE_TYPED_TEST_SUITE_P(Affine, SubspaceBuilderConformance, AffineCases);
 
 template <auto system, Index num_modes>
 struct JoinedCase {
@@ -65,7 +65,7 @@ using JoinedCases =
     testing::Types<JoinedCase<clamped_bar, 4>, JoinedCase<free_bar, 9>, JoinedCase<free_bars, 15>,
                    JoinedCase<held_plate, 4>, JoinedDenseCase<clamped_bar, 5>, JoinedDenseCase<free_bar, 9>,
                    JoinedDenseCase<free_plate, 9>>;
-INSTANTIATE_TYPED_TEST_SUITE_P(Joined, SubspaceConformance, JoinedCases);
+INSTANTIATE_TYPED_TEST_SUITE_P(Joined, SubspaceBuilderConformance, JoinedCases);
 
 namespace {
 

@@ -3,8 +3,8 @@
 #include <reduction/modal_basis.hpp>
 #include <reduction/reduced_system.hpp>
 #include <tests/support/bars.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <gmock/gmock.h>
 

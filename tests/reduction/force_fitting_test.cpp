@@ -1,8 +1,8 @@
 #include <reduction/force_fitting.hpp>
 #include <reduction/modal_basis.hpp>
 #include <tests/support/bars.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 #include <tests/support/spring_network.hpp>
 
 #include <gmock/gmock.h>

@@ -8,8 +8,8 @@
 #include <sparse/nn_omp.hpp>
 #include <sparse/nn_sp.hpp>
 #include <tests/support/heat.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include <physics/equilibrium.hpp>
 #include <reduction/force_curvature.hpp>
 #include <reduction/modal_derivatives.hpp>
-#include <tests/conformance/subspace_conformance.hpp>
+#include <testing/subspace_builder_conformance.hpp>
 #include <tests/support/bars.hpp>
 #include <tests/support/force_models.hpp>
 #include <tests/support/outside.hpp>
@@ -24,7 +24,7 @@ using DerivativesCases =
                    DerivativesCase<free_bar, 4>, DerivativesCase<free_bar, 4, 25, true>,
                    DerivativesCase<clamped_and_free_bars, 4>, DerivativesCase<free_bars, 4>,
                    DerivativesCase<held_plate, 4>, DerivativesCase<free_plate, 4>>;
-INSTANTIATE_TYPED_TEST_SUITE_P(Derivatives, SubspaceConformance, DerivativesCases);
+INSTANTIATE_TYPED_TEST_SUITE_P(Derivatives, SubspaceBuilderConformance, DerivativesCases);
 
 namespace {
 

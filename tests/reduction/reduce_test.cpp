@@ -3,8 +3,8 @@
 #include <core/parallel.hpp>
 #include <reduction/reduce.hpp>
 #include <tests/support/bars.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <gmock/gmock.h>
 

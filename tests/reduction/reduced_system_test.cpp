@@ -1,7 +1,7 @@
 #include <physics/newmark.hpp>
 #include <reduction/modal_basis.hpp>
 #include <reduction/reduced_system.hpp>
-#include <tests/conformance/dynamical_system_conformance.hpp>
+#include <testing/dynamical_system_conformance.hpp>
 #include <tests/support/bars.hpp>
 #include <tests/support/spring_network.hpp>
 

@@ -1,7 +1,7 @@
 #include <physics/mass.hpp>
 #include <reduction/modal_basis.hpp>
 #include <reduction/training_poses.hpp>
-#include <tests/conformance/subspace_conformance.hpp>
+#include <testing/subspace_builder_conformance.hpp>
 #include <tests/support/bars.hpp>
 #include <tests/support/outside.hpp>
 
@@ -21,8 +21,8 @@ using ModalCases = testing::Types<BarCase<ModalBasis, clamped_bar, 10>, BarCase<
 using ExtendedModalCases =
     testing::Types<BarCase<ExtendedModalBasis, clamped_bar, 6>, BarCase<ExtendedModalBasis, free_bar, 10>,
                    BarCase<ExtendedModalBasis, clamped_and_free_bars, 12>>;
-INSTANTIATE_TYPED_TEST_SUITE_P(Modal, SubspaceConformance, ModalCases);
-INSTANTIATE_TYPED_TEST_SUITE_P(ExtendedModal, SubspaceConformance, ExtendedModalCases);
+INSTANTIATE_TYPED_TEST_SUITE_P(Modal, SubspaceBuilderConformance, ModalCases);
+INSTANTIATE_TYPED_TEST_SUITE_P(ExtendedModal, SubspaceBuilderConformance, ExtendedModalCases);
 
 namespace {
 

@@ -12,7 +12,7 @@
 namespace supple {
 namespace {
 
-using testing::gaussian;
+using test::gaussian;
 
 const std::vector<Index> some{7, 2, 300, 11};
 const std::vector<Index> more{0, 150};
@@ -32,7 +32,7 @@ void expect_columns(const C& block, const Matrix& matrix, const std::vector<Inde
 // Both representations of columns, from the same numbers.
 const Matrix A = gaussian(60, 320, 1);
 const DenseProblem dense(A, gaussian(60, 1, 2));
-const testing::ColumnsOnly on_demand(A, dense.rhs());
+const test::ColumnsOnly on_demand(A, dense.rhs());
 
 template <typename P>
 struct Block : ::testing::Test {
@@ -43,7 +43,7 @@ struct Block : ::testing::Test {
       return on_demand;
   }
 };
-using Problems = ::testing::Types<DenseProblem, testing::ColumnsOnly>;
+using Problems = ::testing::Types<DenseProblem, test::ColumnsOnly>;
 TYPED_TEST_SUITE(Block, Problems);
 
 TYPED_TEST(Block, HoldsTheColumnsOfTheMatrix) {

@@ -10,19 +10,19 @@
 namespace supple {
 namespace {
 
-using testing::gaussian;
-using testing::random_subset;
+using test::gaussian;
+using test::random_subset;
 
 // 12 of 200 columns, weights in [1, 2], no noise.
 struct Planted {
   std::vector<Index> support = random_subset(200, 12, 1);
   Matrix A = gaussian(100, 200, 2);
-  Vector w = testing::planted_weights(200, support, 3);
+  Vector w = test::planted_weights(200, support, 3);
   DenseProblem problem{A, A* w};
 };
 
 DenseProblem noisy(std::uint64_t seed = 1) {
-  const Matrix A = testing::uniform(60, 150, seed);
+  const Matrix A = test::uniform(60, 150, seed);
   return {A, A * Vector::Ones(150)};
 }
 
@@ -85,7 +85,7 @@ TEST(NnHtp, GivesTheSameBitsWhateverTheNumberOfThreads) {
 TEST(NnHtp, NeedsNoMoreThanColumnsOnDemand) {
   const DenseProblem dense = noisy();
   const Selection a = NnHtp{.seed = 1}(dense, 10);
-  const Selection b = NnHtp{.seed = 1}(testing::ColumnsOnly(dense.matrix(), dense.rhs()), 10);
+  const Selection b = NnHtp{.seed = 1}(test::ColumnsOnly(dense.matrix(), dense.rhs()), 10);
   EXPECT_EQ(a.indices, b.indices);
   EXPECT_TRUE(a.weights.isApprox(b.weights, 1e-10));
 }

@@ -13,8 +13,8 @@
 namespace supple {
 namespace {
 
-using testing::gaussian;
-using testing::uniform;
+using test::gaussian;
+using test::uniform;
 
 struct Case {
   std::string name;
@@ -95,12 +95,12 @@ TEST_P(NnlsMethods, AgreeWithBruteForceInExtendedPrecision) {
     const NnlsFit fit = Nnls{.method = GetParam()}(c.A, c.b);
     ASSERT_EQ(fit.w.size(), c.A.cols()) << c.name;
     EXPECT_TRUE((fit.w.array() >= 0).all()) << c.name;
-    const double kkt = testing::kkt_residual(c.A, c.b, fit.w);
+    const double kkt = test::kkt_residual(c.A, c.b, fit.w);
     // Rounding the exact weights to double alone changes A w, and so g, by this share of b.
     const double rounding = c.b.norm() > 0 ? 2e-16 * c.A.colwise().norm().dot(fit.w) / c.b.norm() : 0;
     EXPECT_LE(kkt, 1e-10 + 4 * rounding) << c.name;
     EXPECT_NEAR(fit.report.residual, kkt, 1e-14 + 16 * rounding) << c.name;
-    const auto least = static_cast<double>(testing::brute_force_residual(c.A, c.b));
+    const auto least = static_cast<double>(test::brute_force_residual(c.A, c.b));
     // Normal equations lose digits: with cond(A) = 1e6 their error is up to 1e-16 · 1e12 of b.
     const double slack = GetParam() == NnlsMethod::NormalEquations ? 1e-6 : 1e-12;
     EXPECT_NEAR(fit.residual_norm, least, (slack + 16 * rounding) * c.b.norm()) << c.name;
@@ -114,12 +114,12 @@ TEST_P(NnlsMethods, AgreeWithLawsonHansonInExtendedPrecision) {
     for (const Case& c :
          {Case{"positive", uniform(rows, cols, seed), gaussian(rows, 1, 9) + Vector::Ones(rows)},
           Case{"gaussian", gaussian(rows, cols, seed), gaussian(rows, 1, 10)},
-          Case{"forces", testing::force_fitting_on_a_cube(4, 5, cols, seed).matrix(),
-               testing::force_fitting_on_a_cube(4, 5, cols, seed).rhs()}}) {
+          Case{"forces", test::force_fitting_on_a_cube(4, 5, cols, seed).matrix(),
+               test::force_fitting_on_a_cube(4, 5, cols, seed).rhs()}}) {
       const NnlsFit fit = Nnls{.method = GetParam()}(c.A, c.b);
-      const Vector w = testing::lawson_hanson(c.A, c.b).cast<double>();
-      EXPECT_LE(testing::kkt_residual(c.A, c.b, w), 1e-14) << "the reference itself, " << c.name;
-      EXPECT_LE(testing::kkt_residual(c.A, c.b, fit.w), 1e-10) << c.name;
+      const Vector w = test::lawson_hanson(c.A, c.b).cast<double>();
+      EXPECT_LE(test::kkt_residual(c.A, c.b, w), 1e-14) << "the reference itself, " << c.name;
+      EXPECT_LE(test::kkt_residual(c.A, c.b, fit.w), 1e-10) << c.name;
       const double slack = GetParam() == NnlsMethod::NormalEquations ? 1e-6 : 1e-12;
       EXPECT_NEAR(fit.residual_norm, (c.b - c.A * w).norm(), slack * c.b.norm()) << c.name;
     }
@@ -166,7 +166,7 @@ TEST(Nnls, StartsFromAnyPassiveSet) {
   const Vector w = Nnls{}(A, b).w;
   for (NnlsMethod method : {NnlsMethod::NormalEquations, NnlsMethod::Qr})
     for (std::uint64_t seed = 1; seed <= 10; ++seed)
-      EXPECT_TRUE(Nnls{.method = method}(A, b, testing::random_subset(30, static_cast<Index>(3 * seed), seed))
+      EXPECT_TRUE(Nnls{.method = method}(A, b, test::random_subset(30, static_cast<Index>(3 * seed), seed))
                       .w.isApprox(w, 1e-9));
 }
 
@@ -203,13 +203,13 @@ TEST(QuasiNewtonNnls, ComesCloseOnBenignProblems) {
                                    QuasiNewtonMethod::TruncatedNewton, QuasiNewtonMethod::Ccsa}) {
     const NnlsFit fit = QuasiNewtonNnls{.method = method}(A, b);
     EXPECT_NEAR(fit.residual_norm, best, 1e-6 * best) << static_cast<int>(method);
-    EXPECT_NEAR(fit.report.residual, testing::kkt_residual(A, b, fit.w), 1e-12);
+    EXPECT_NEAR(fit.report.residual, test::kkt_residual(A, b, fit.w), 1e-12);
   }
 }
 
 // The paper's finding: on the columns of a force fitting, projection-based solvers do not arrive.
 TEST(QuasiNewtonNnls, IsDefeatedByTheStiffnessOfForceFittings) {
-  const DenseProblem problem = testing::force_fitting_on_a_cube(6, 20, 100, 1);
+  const DenseProblem problem = test::force_fitting_on_a_cube(6, 20, 100, 1);
   const NnlsFit exact = Nnls{}(problem.matrix(), problem.rhs());
   const NnlsFit fit = QuasiNewtonNnls{.max_evaluations = 2000}(problem.matrix(), problem.rhs());
   EXPECT_LE(exact.report.residual, 1e-12);

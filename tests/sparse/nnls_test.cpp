@@ -8,8 +8,8 @@
 namespace supple {
 namespace {
 
-using testing::gaussian;
-using testing::uniform;
+using test::gaussian;
+using test::uniform;
 
 NnlsSolution solve(const Matrix& A, const Vector& b, std::span<const Index> passive = {}) {
   return Fnnls{}(A.transpose() * A, A.transpose() * b, passive);
@@ -46,7 +46,7 @@ TEST(Fnnls, SatisfiesTheOptimalityConditionsOnRandomProblems) {
 
 TEST(Fnnls, RecoversAPlantedSolution) {
   const Matrix A = gaussian(80, 50, 1);
-  const Vector w = testing::planted_weights(50, testing::random_subset(50, 20, 2), 3);
+  const Vector w = test::planted_weights(50, test::random_subset(50, 20, 2), 3);
   EXPECT_TRUE(solve(A, A * w).w.isApprox(w, 1e-11));
 }
 
@@ -119,7 +119,7 @@ TEST(Fnnls, FindsTheSameFromAnyStart) {
   const Vector b = gaussian(60, 1, 7) + Vector::Ones(60);
   const Vector w = solve(A, b).w;
   for (std::uint64_t seed = 1; seed <= 20; ++seed)
-    EXPECT_TRUE(solve(A, b, testing::random_subset(30, static_cast<Index>(seed), seed)).w.isApprox(w, 1e-10));
+    EXPECT_TRUE(solve(A, b, test::random_subset(30, static_cast<Index>(seed), seed)).w.isApprox(w, 1e-10));
 }
 
 TEST(Fnnls, AnswersWithinItsLimitOfIterations) {

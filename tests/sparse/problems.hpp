@@ -3,40 +3,13 @@
 
 #include <core/random.hpp>
 #include <sparse/fitting_problem.hpp>
+#include <testing/random_problems.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-namespace supple::testing {
-
-inline Matrix gaussian(Index rows, Index cols, std::uint64_t seed) {
-  Random random(seed);
-  return Matrix::NullaryExpr(rows, cols, [&] { return random.normal(); });
-}
-
-inline Matrix uniform(Index rows, Index cols, std::uint64_t seed) {
-  Random random(seed);
-  return Matrix::NullaryExpr(rows, cols, [&] { return random.uniform(); });
-}
-
-/// `count` of 0 … n − 1, ascending.
-inline std::vector<Index> random_subset(Index n, Index count, std::uint64_t seed) {
-  std::vector<Index> all(n);
-  for (Index i = 0; i < n; ++i) all[i] = i;
-  all = Random(seed).sample(all, count);
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
-/// w with the given support and weights in [1, 2].
-inline Vector planted_weights(Index n, const std::vector<Index>& support, std::uint64_t seed) {
-  Random random(seed);
-  Vector w = Vector::Zero(n);
-  for (Index i : support) w[i] = 1 + random.uniform();
-  return w;
-}
+namespace supple::test {
 
 /// A force fitting in the small, with d = 3 p reduced unknowns and a column for each of m points of a cube:
 /// column i is the reduced force V P(F) gᵀ of a St. Venant–Kirchhoff element at a random point, F = I + Qᵀ g,
@@ -98,4 +71,4 @@ class ColumnsOnly {
   Vector b_;
 };
 
-}  // namespace supple::testing
+}  // namespace supple::test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace supple::testing {
+namespace supple::test {
 
 using LongMatrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 using LongVector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
@@ -95,4 +95,4 @@ inline double kkt_residual(const Matrix& A, const Vector& b, const Vector& w) {
   return b.norm() > 0 ? worst / b.norm() : worst;
 }
 
-}  // namespace supple::testing
+}  // namespace supple::test

@@ -1,5 +1,6 @@
 #include <sparse/selector_library.hpp>
-#include <tests/conformance/subset_selector_conformance.hpp>
+#include <testing/subset_selector_conformance.hpp>
+#include <tests/sparse/problems.hpp>
 
 #include <gtest/gtest.h>
 
@@ -34,14 +35,14 @@ struct Names {
 
 }  // namespace
 
-namespace testing {
+namespace test {
 INSTANTIATE_TYPED_TEST_SUITE_P(Every, SubsetSelectorConformance, Selectors, Names);
 }
 
 namespace {
 
-using testing::force_fitting_on_a_cube;
-using testing::gaussian;
+using test::force_fitting_on_a_cube;
+using test::gaussian;
 
 // A force fitting of d = 18, T = 30, m = 1500 on which the selectors are compared.
 const DenseProblem& cube() {
@@ -65,16 +66,16 @@ TEST(NnSp, NeverGetsWorse) {
 }
 
 TEST(NnSp, RecoversAPlantedSolution) {
-  const auto support = testing::random_subset(200, 12, 1);
+  const auto support = test::random_subset(200, 12, 1);
   const Matrix A = gaussian(100, 200, 2);
-  const Vector w = testing::planted_weights(200, support, 3);
+  const Vector w = test::planted_weights(200, support, 3);
   const Selection c = NnSp{}(DenseProblem(A, A * w), 12);
   EXPECT_EQ(c.indices, support);
   EXPECT_EQ(c.report.status, Status::Converged);
 }
 
 TEST(NnSp, FindsTheBestOfAllSelectionsOfASmallProblem) {
-  const Matrix A = testing::uniform(20, 12, 1);
+  const Matrix A = test::uniform(20, 12, 1);
   const Vector b = A * Vector::Ones(12) + gaussian(20, 1, 2);
   double least = b.norm();
   for (unsigned set = 0; set < (1u << 12); ++set) {
@@ -101,7 +102,7 @@ TEST(NnOmp, GainsByGrowingTooFarAndPruning) {
 }
 
 TEST(Ecsw, ReachesTheOptimumOfNnlsIfNotStopped) {
-  const Matrix A = testing::uniform(40, 60, 3);
+  const Matrix A = test::uniform(40, 60, 3);
   const Vector b = gaussian(40, 1, 4) + Vector::Ones(40);
   const Selection c = Ecsw{}(DenseProblem(A, b), 60);
   EXPECT_NEAR(c.report.residual, AllColumns{}(DenseProblem(A, b), 60).report.residual, 1e-12 * b.norm());
@@ -115,7 +116,7 @@ TEST(GreedyCubature, LosesLittleBySubsetTraining) {
 }
 
 TEST(Ecm, IsExactOnItsModes) {
-  const Matrix A = gaussian(60, 8, 1) * testing::uniform(8, 300, 2);  // rank 8: eight columns suffice
+  const Matrix A = gaussian(60, 8, 1) * test::uniform(8, 300, 2);  // rank 8: eight columns suffice
   const Selection c = Ecm{}(DenseProblem(A, A * Vector::Ones(300)), 8);
   EXPECT_EQ(c.size(), 8);
   EXPECT_LE(c.report.training_error, 1e-10);
@@ -144,9 +145,9 @@ TEST(Sketched, LosesLittle) {
 }
 
 TEST(Niht, RecoversAPlantedSignedSolution) {
-  const auto support = testing::random_subset(200, 10, 1);
+  const auto support = test::random_subset(200, 10, 1);
   const Matrix A = gaussian(100, 200, 2);
-  Vector w = testing::planted_weights(200, support, 3);
+  Vector w = test::planted_weights(200, support, 3);
   for (std::size_t k = 0; k < support.size(); k += 2) w[support[k]] *= -1;
   const DenseProblem problem(A, A * w);
   for (const Selection& c : {Niht{}(problem, 10), Htp{}(problem, 10)}) {
@@ -185,7 +186,7 @@ TEST(SelectByName, DoesTheSameOnATypeErasedProblem) {
 
 // Only what the concept asks for: no blocks, no full gradient, no groups.
 TEST(SelectByName, NeedsNoMoreThanColumnsOnDemand) {
-  const testing::ColumnsOnly problem(cube().matrix(), cube().rhs());
+  const test::ColumnsOnly problem(cube().matrix(), cube().rhs());
   for (std::string_view name : selector_names) {
     if (name == "all") continue;
     const Selection expected = select_by_name(name, cube(), 10, 1), c = select_by_name(name, problem, 10, 1);

@@ -10,7 +10,7 @@
 #include <physics/surface_heat_loss.hpp>
 #include <physics/tet_elasticity.hpp>
 #include <tests/support/meshes.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/random_vectors.hpp>
 #include <tests/support/spring_network.hpp>
 
 namespace supple::test {

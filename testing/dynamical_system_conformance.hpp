@@ -13,8 +13,8 @@
 #include <core/check.hpp>
 #include <core/parallel.hpp>
 #include <physics/dynamical_system.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>

@@ -5,14 +5,14 @@
 
 #include <core/parallel.hpp>
 #include <sparse/selectors.hpp>
-#include <tests/sparse/problems.hpp>
+#include <testing/random_problems.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace supple::testing {
+namespace supple::test {
 
 template <typename S>
 struct SelectorTraits {
@@ -302,4 +302,4 @@ REGISTER_TYPED_TEST_SUITE_P(SubsetSelectorConformance, AnswersSoundly,
                             RefusesNumbersThatAreNotFinite, RefusesRequestsThatMakeNoSense,
                             AsksForHeldOutErrors);
 
-}  // namespace supple::testing
+}  // namespace supple::test

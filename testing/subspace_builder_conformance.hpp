@@ -6,14 +6,14 @@
 ///       static System make();                        // small; called once a test
 ///       static Builder builder();                    // called with that system
 ///     };
-///     INSTANTIATE_TYPED_TEST_SUITE_P(MyBuilder, SubspaceConformance, MyCase);
+///     INSTANTIATE_TYPED_TEST_SUITE_P(MyBuilder, SubspaceBuilderConformance, MyCase);
 
 #include <core/parallel.hpp>
 #include <reduction/modal_basis.hpp>
 #include <reduction/reduced_modes.hpp>
 #include <reduction/subspace_builder.hpp>
-#include <tests/support/near.hpp>
-#include <tests/support/random_vectors.hpp>
+#include <testing/near.hpp>
+#include <testing/random_vectors.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 namespace supple::test {
 
 template <typename Case>
-class SubspaceConformance : public testing::Test {
+class SubspaceBuilderConformance : public testing::Test {
  protected:
   using System = decltype(Case::make());
   using Builder = decltype(Case::builder());
@@ -40,22 +40,22 @@ class SubspaceConformance : public testing::Test {
     return mass;
   }
 };
-TYPED_TEST_SUITE_P(SubspaceConformance);
+TYPED_TEST_SUITE_P(SubspaceBuilderConformance);
 
-TYPED_TEST_P(SubspaceConformance, ColumnsAreMassOrthonormal) {
+TYPED_TEST_P(SubspaceBuilderConformance, ColumnsAreMassOrthonormal) {
   const Matrix U = this->basis.dense();
   ASSERT_EQ(U.rows(), this->system.num_nodes() * TestFixture::node_dim);
   const Matrix gram = U.transpose() * this->mass_of_all_dofs().asDiagonal() * U;
   EXPECT_TRUE(is_near(gram, Matrix::Identity(U.cols(), U.cols()), 1e-12));
 }
 
-TYPED_TEST_P(SubspaceConformance, FixedNodesDoNotMove) {
+TYPED_TEST_P(SubspaceBuilderConformance, FixedNodesDoNotMove) {
   const Matrix U = this->basis.dense();
   for (const Index v : this->system.numbering().fixed_nodes())
     EXPECT_TRUE(U.middleRows(v * TestFixture::node_dim, TestFixture::node_dim).isZero(0)) << "node " << v;
 }
 
-TYPED_TEST_P(SubspaceConformance, GivesTheSameBitsAgainWhateverTheNumberOfThreads) {
+TYPED_TEST_P(SubspaceBuilderConformance, GivesTheSameBitsAgainWhateverTheNumberOfThreads) {
   for (const int threads : {1, 2}) {
     set_num_threads(threads);
     EXPECT_TRUE(is_same(TypeParam::builder()(this->system).W, this->basis.W)) << threads << " threads";
@@ -63,7 +63,7 @@ TYPED_TEST_P(SubspaceConformance, GivesTheSameBitsAgainWhateverTheNumberOfThread
   set_num_threads(0);
 }
 
-TYPED_TEST_P(SubspaceConformance, FrequenciesAscendAndOneIsTheSmallestInTheSubspace) {
+TYPED_TEST_P(SubspaceBuilderConformance, FrequenciesAscendAndOneIsTheSmallestInTheSubspace) {
   const SubspaceReport& report = this->basis.report;
   ASSERT_EQ(report.residuals.size(), report.omega.size());
   if (report.omega.size() == 0) {  // not made from modes; no subspace has lower frequencies than the system
@@ -91,7 +91,7 @@ TYPED_TEST_P(SubspaceConformance, FrequenciesAscendAndOneIsTheSmallestInTheSubsp
 }
 
 // U is given by the action of its rows, of its columns and as a matrix: three ways to say the same.
-TYPED_TEST_P(SubspaceConformance, AllViewsOfTheBasisAgree) {
+TYPED_TEST_P(SubspaceBuilderConformance, AllViewsOfTheBasisAgree) {
   const auto& view = this->basis;
   const Matrix U = view.dense();
   ASSERT_EQ(view.dim(), U.cols());
@@ -111,7 +111,7 @@ TYPED_TEST_P(SubspaceConformance, AllViewsOfTheBasisAgree) {
   EXPECT_THROW((void)view.project(Vector::Zero(view.full_dim() - 1)), std::invalid_argument);
 }
 
-REGISTER_TYPED_TEST_SUITE_P(SubspaceConformance, ColumnsAreMassOrthonormal, FixedNodesDoNotMove,
+REGISTER_TYPED_TEST_SUITE_P(SubspaceBuilderConformance, ColumnsAreMassOrthonormal, FixedNodesDoNotMove,
                             GivesTheSameBitsAgainWhateverTheNumberOfThreads,
                             FrequenciesAscendAndOneIsTheSmallestInTheSubspace, AllViewsOfTheBasisAgree);
 

@@ -1,0 +1,32 @@
+# Compiles models that are wrong on purpose, and fails unless the compiler's first error is the sentence in the first
+# line of the file. Run as: cmake -DCOMPILER=... -DINCLUDE=<source> -DEIGEN=<folder> -DSOURCES=<folder> -P concept_messages.cmake
+cmake_minimum_required(VERSION 3.25)
+
+function(compile source code errors)
+  execute_process(COMMAND ${COMPILER} -std=c++20 -fsyntax-only -I${INCLUDE} -isystem ${EIGEN} ${source}
+    RESULT_VARIABLE result ERROR_VARIABLE messages OUTPUT_QUIET)
+  set(${code} ${result} PARENT_SCOPE)
+  set(${errors} "${messages}" PARENT_SCOPE)
+endfunction()
+
+compile(${SOURCES}/right.cpp code messages)
+if(NOT code EQUAL 0)
+  message(FATAL_ERROR "right.cpp does not compile, so the others say nothing:\n${messages}")
+endif()
+file(GLOB sources ${SOURCES}/*.cpp)
+list(REMOVE_ITEM sources ${SOURCES}/right.cpp)
+foreach(source IN LISTS sources)
+  cmake_path(GET source FILENAME name)
+  file(STRINGS ${source} expected LIMIT_COUNT 1 ENCODING UTF-8)
+  string(REGEX REPLACE "^// " "" expected "${expected}")
+  compile(${source} code messages)
+  string(REGEX MATCH "error: [^\n]*" first "${messages}")
+  string(FIND "${first}" "${expected}" place)
+  if(code EQUAL 0)
+    message(SEND_ERROR "${name} compiles, expected \"${expected}\"")
+  elseif(place EQUAL -1)
+    message(SEND_ERROR "${name}: expected \"${expected}\", found \"${first}\"")
+  else()
+    message(STATUS "${name}: ${first}")
+  endif()
+endforeach()

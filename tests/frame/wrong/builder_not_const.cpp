@@ -1,0 +1,10 @@
+// SubspaceBuilder: operator()(system) must be const
+#include <reduction/explain_subspace_builder.hpp>
+
+using namespace supple;
+
+struct RandomBasis {
+  template <DynamicalSystem S>
+  DenseBasis operator()(const S& system);
+};
+static_assert(explain_subspace_builder<RandomBasis>());

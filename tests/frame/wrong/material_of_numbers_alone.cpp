@@ -1,0 +1,15 @@
+// Material: `energy` must be written over the scalar type Real
+#include <physics/tet_elasticity.hpp>
+
+using namespace supple;
+
+template <typename Real>
+struct Tissue {
+  Real mu;
+  Real energy(const Matrix3<double>& F) const;
+  Matrix3<Real> stress(const Matrix3<Real>& F) const;
+};
+
+TetElasticity<Tissue> model(const TetMesh& mesh) {
+  return {mesh, Tissue<double>{1e5}};
+}

@@ -1,0 +1,14 @@
+// Material: `Real energy(const Matrix3<Real>& F) const` is missing
+#include <physics/tet_elasticity.hpp>
+
+using namespace supple;
+
+template <typename Real>
+struct Tissue {
+  Real mu;
+  Matrix3<Real> stress(const Matrix3<Real>& F) const;
+};
+
+TetElasticity<Tissue> model(const TetMesh& mesh) {
+  return {mesh, Tissue<double>{1e5}};
+}

@@ -1,0 +1,25 @@
+// compiles: what the wrong ones beside it are wrong about, right
+#include <physics/full_system.hpp>
+#include <physics/tet_elasticity.hpp>
+#include <reduction/explain_subspace_builder.hpp>
+#include <sparse/explain_subset_selector.hpp>
+
+using namespace supple;
+
+template <typename Real>
+struct Tissue {
+  Real mu;
+  Real energy(const Matrix3<Real>& F) const { return mu * F.squaredNorm(); }
+};
+struct FirstColumns {
+  template <FittingProblem P>
+  Selection operator()(const P& problem, const SelectionRequest& request) const;
+};
+struct RandomBasis {
+  template <DynamicalSystem S>
+  DenseBasis operator()(const S& system) const;
+};
+static_assert(explain_material<Tissue>());
+static_assert(explain_force_model<TetElasticity<Tissue>>());
+static_assert(explain_subset_selector<FirstColumns>());
+static_assert(explain_subspace_builder<RandomBasis>());
