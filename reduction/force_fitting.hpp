@@ -338,11 +338,15 @@ class ForceFitting {
     std::vector<LocalMatrix<local>> DND;
     if (norms) {
       DND.resize(m);
-      parallel_ranges(m, 1024, [&](Index begin, Index end) {
-        for (Index i = begin; i < end; ++i) {
-          const RowMatrix E = component_rows(*model_, *subspace_, i);
-          DND[i] = row_products(E, apply_metric(E));
-        }
+      parallel_ranges(m, 64, [&](Index begin, Index end) {
+        RowMatrix E((end - begin) * rows_per_component, subspace_->num_fields());
+        for (Index i = begin; i < end; ++i)
+          E.middleRows((i - begin) * rows_per_component, rows_per_component) =
+              component_rows(*model_, *subspace_, i);
+        const RowMatrix NE = apply_metric(E);
+        for (Index i = begin; i < end; ++i)
+          DND[i] = row_products(E.middleRows((i - begin) * rows_per_component, rows_per_component),
+                                NE.middleRows((i - begin) * local, local));
       });
     }
     AlignedBuffer u(subspace_->full_dim() * Pack::size), y(norms ? 0 : u.size());

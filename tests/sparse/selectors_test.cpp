@@ -190,6 +190,10 @@ TEST(SelectByName, NeedsNoMoreThanColumnsOnDemand) {
   for (std::string_view name : selector_names) {
     if (name == "all") continue;
     const Selection expected = select_by_name(name, cube(), 10, 1), c = select_by_name(name, problem, 10, 1);
+    if (name == "nn-sp") {  // draws by norms where the problem knows them
+      EXPECT_LT(c.report.residual, 1.2 * expected.report.residual);
+      continue;
+    }
     EXPECT_EQ(c.indices, expected.indices) << name;
     EXPECT_NEAR(c.report.residual, expected.report.residual, 1e-9 * problem.rhs().norm()) << name;
   }
