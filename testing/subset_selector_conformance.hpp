@@ -4,7 +4,9 @@
 /// weights may be negative or it cannot be told a size, a specialisation of SelectorTraits.
 
 #include <core/parallel.hpp>
+#include <sparse/explain_subset_selector.hpp>
 #include <sparse/selectors.hpp>
+#include <testing/agreement.hpp>
 #include <testing/random_problems.hpp>
 
 #include <gmock/gmock.h>
@@ -38,9 +40,64 @@ struct SelectorTraits<AllColumns> : SelectorTraits<void> {
   static constexpr bool chooses = false;
 };
 
+/// What holds for the answer to any request, or a sentence that says what does not.
+/// \param optimal_weights  whether the weights must be a least-squares fit.
+inline ::testing::AssertionResult is_sound(const Selection& c, const DenseProblem& problem,
+                                           const SelectionRequest& asked, Signs signs, bool optimal_weights) {
+  const auto violated = [](const auto&... parts) {
+    return ::testing::AssertionFailure() << text("selector: ", parts...);
+  };
+  const auto contains = [](const std::vector<Index>& set, Index j) {
+    return std::find(set.begin(), set.end(), j) != set.end();
+  };
+  if (c.weights.size() != c.size())
+    return violated("weights: expected one for each of ", c.size(), " indices, found ", c.weights.size());
+  if (c.size() > asked.size) return violated("indices: expected at most ", asked.size, ", found ", c.size());
+  for (Index k = 0; k < c.size(); ++k) {
+    const Index j = c.indices[k];
+    const double w = c.weights[k];
+    if (j < 0 || j >= problem.cols())
+      return violated("indices[", k, "]: expected a column 0 to ", problem.cols() - 1, ", found ", j);
+    if (k > 0 && j <= c.indices[k - 1])
+      return violated("indices[", k, "]: expected more than ", c.indices[k - 1], ", the one before it, found ", j);
+    if (!contains(asked.must_keep, j)) {
+      if (w == 0) return violated("weight of column ", j, ": expected a column without weight to be left out, found 0");
+      if (!asked.candidates.empty() && !contains(asked.candidates, j))
+        return violated("indices[", k, "]: expected a candidate, found column ", j);
+    }
+    if (signs == Signs::NonNegative && !(w >= 0)) return violated("weight of column ", j, ": expected >= 0, found ", w);
+  }
+  for (const Index j : asked.must_keep)
+    if (!contains(c.indices, j)) return violated("indices: expected column ", j, ", which it must keep, found none");
+
+  const SelectionReport& report = c.report;
+  const Vector residual = problem.rhs() - problem.matrix()(Eigen::all, c.indices) * c.weights;
+  const double r = residual.norm(), b = problem.rhs().norm();
+  if (!(std::abs(report.residual - r) <= 1e-10 * b))
+    return violated("report.residual: expected |A w - b| = ", r, ", found ", report.residual);
+  if (!(std::abs(report.training_error - (b > 0 ? r / b : 0)) <= 1e-10))
+    return violated("report.training_error: expected |A w - b| / |b| = ", b > 0 ? r / b : 0, ", found ",
+                    report.training_error);
+  if (!(report.residual <= b * (1 + 1e-12)))
+    return violated("report.residual: expected at most |b| = ", b, ", that of no column, found ", report.residual);
+  if (optimal_weights && !(report.kkt_residual <= 1e-10))
+    return violated("report.kkt_residual: expected <= 1e-10, for weights are a least-squares fit, found ",
+                    report.kkt_residual);
+  if (report.stop_reason.empty()) return violated("report.stop_reason: expected words, found none");
+  if (!(report.seconds >= 0)) return violated("report.seconds: expected >= 0, found ", report.seconds);
+  if (report.columns_evaluated < c.size())
+    return violated("report.columns_evaluated: expected at least ", c.size(), ", found ", report.columns_evaluated);
+  for (std::size_t i = 1; i < report.history.size(); ++i)
+    if (report.history[i].seconds < report.history[i - 1].seconds)
+      return violated("report.history[", i, "].seconds: expected at least ", report.history[i - 1].seconds, ", found ",
+                      report.history[i].seconds);
+  return ::testing::AssertionSuccess();
+}
+
 template <typename S>
 class SubsetSelectorConformance : public ::testing::Test {
  protected:
+  static_assert(explain_subset_selector<S>());
   using Traits = SelectorTraits<S>;
 
   static constexpr Index rows = 48, cols = 90;
@@ -52,46 +109,9 @@ class SubsetSelectorConformance : public ::testing::Test {
 
   static SelectionRequest request(Index s) { return Traits::chooses ? s : cols; }
 
-  // All that holds for any answer.
-  static void expect_sound(const DenseProblem& problem, const SelectionRequest& asked, const Selection& c) {
-    ASSERT_EQ(c.weights.size(), c.size());
-    EXPECT_LE(c.size(), asked.size);
-    EXPECT_TRUE(std::is_sorted(c.indices.begin(), c.indices.end()));
-    EXPECT_EQ(std::adjacent_find(c.indices.begin(), c.indices.end()), c.indices.end());
-    const auto contains = [](const std::vector<Index>& set, Index j) {
-      return std::find(set.begin(), set.end(), j) != set.end();
-    };
-    for (Index k = 0; k < c.size(); ++k) {
-      const Index j = c.indices[k];
-      ASSERT_TRUE(0 <= j && j < problem.cols());
-      if (!contains(asked.must_keep, j)) {
-        EXPECT_NE(c.weights[k], 0) << "column " << j;
-        EXPECT_TRUE(asked.candidates.empty() || contains(asked.candidates, j)) << "column " << j;
-      }
-      if (Traits::signs == Signs::NonNegative) {
-        EXPECT_GE(c.weights[k], 0) << "column " << j;
-      }
-    }
-    EXPECT_THAT(c.indices, ::testing::IsSupersetOf(asked.must_keep));
-
-    const Vector r = problem.rhs() - problem.matrix()(Eigen::all, c.indices) * c.weights;
-    const double b = problem.rhs().norm();
-    EXPECT_NEAR(c.report.residual, r.norm(), 1e-10 * b);
-    EXPECT_NEAR(c.report.training_error, b > 0 ? r.norm() / b : 0, 1e-10);
-    EXPECT_LE(c.report.residual, b * (1 + 1e-12)) << "worse than nothing";
-    if (Traits::optimal_weights) {
-      EXPECT_LE(c.report.kkt_residual, 1e-10);
-    }
-    EXPECT_FALSE(c.report.stop_reason.empty());
-    EXPECT_GE(c.report.seconds, 0);
-    EXPECT_GE(c.report.columns_evaluated, c.size());
-    for (std::size_t i = 1; i < c.report.history.size(); ++i)
-      EXPECT_GE(c.report.history[i].seconds, c.report.history[i - 1].seconds);
-  }
-
   static Selection expect_sound_answer(const DenseProblem& problem, const SelectionRequest& asked) {
     const Selection c = S{}(problem, asked);
-    expect_sound(problem, asked, c);
+    EXPECT_TRUE(is_sound(c, problem, asked, Traits::signs, Traits::optimal_weights));
     return c;
   }
 };

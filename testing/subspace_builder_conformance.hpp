@@ -9,50 +9,86 @@
 ///     INSTANTIATE_TYPED_TEST_SUITE_P(MyBuilder, SubspaceBuilderConformance, MyCase);
 
 #include <core/parallel.hpp>
+#include <reduction/explain_subspace_builder.hpp>
 #include <reduction/modal_basis.hpp>
 #include <reduction/reduced_modes.hpp>
-#include <reduction/subspace_builder.hpp>
+#include <testing/agreement.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace supple::test {
+
+/// 1 ≤ d ≤ unknowns, as many rows as nodes times node_dim, and finite; or a sentence that says what is not.
+template <Subspace Basis, typename System>
+testing::AssertionResult has_dimensions(const Basis& basis, const System& system) {
+  if (basis.full_dim() != system.num_nodes() * System::node_dim)
+    return testing::AssertionFailure() << text("subspace: rows: expected ", system.num_nodes() * System::node_dim,
+                                               ", unknowns of all nodes, found ", basis.full_dim());
+  if (basis.dim() < 1 || basis.dim() > system.dim())
+    return testing::AssertionFailure() << text("subspace: dimension: expected 1 to ", system.dim(),
+                                               ", unknowns of the system, found ", basis.dim());
+  for (Index j = 0; j < basis.W.cols(); ++j)
+    for (Index i = 0; i < basis.W.rows(); ++i)
+      if (!std::isfinite(basis.W(i, j)))
+        return testing::AssertionFailure()
+               << text("subspace: W(", i, ", ", j, "): expected a finite number, found ", basis.W(i, j));
+  return testing::AssertionSuccess();
+}
+
+/// UᵀMU = I with the masses of all nodes.
+template <Subspace Basis, typename System>
+testing::AssertionResult is_mass_orthonormal(const Basis& basis, const System& system) {
+  const Matrix U = basis.dense();
+  Vector mass(U.rows());
+  for (Index i = 0; i < mass.size(); ++i) mass[i] = system.nodal_mass()[i / System::node_dim];
+  const Matrix gram = U.transpose() * mass.asDiagonal() * U;
+  return agree("subspace: columns are not mass-orthonormal",
+               [](Index i, Index j) { return text("u_", i, " . M u_", j); }, gram,
+               Matrix::Identity(U.cols(), U.cols()), 1e-12);
+}
+
+template <Subspace Basis, typename System>
+testing::AssertionResult keeps_fixed_nodes(const Basis& basis, const System& system) {
+  const Matrix U = basis.dense();
+  for (const Index v : system.numbering().fixed_nodes())
+    for (int axis = 0; axis < System::node_dim; ++axis)
+      for (Index j = 0; j < U.cols(); ++j)
+        if (const double u = U(v * System::node_dim + axis, j); u != 0)
+          return testing::AssertionFailure() << text("subspace: a fixed node moves: node ", v, ", axis ", axis,
+                                                     ", column ", j, ": expected 0, found ", u);
+  return testing::AssertionSuccess();
+}
 
 template <typename Case>
 class SubspaceBuilderConformance : public testing::Test {
  protected:
   using System = decltype(Case::make());
   using Builder = decltype(Case::builder());
-  static_assert(SubspaceBuilderFor<Builder, System>);
+  static_assert(explain_subspace_builder<Builder, System>());
   static constexpr int node_dim = System::node_dim;
   static constexpr Index stencil_size =
       std::remove_cvref_t<decltype(std::declval<System>().model())>::stencil_size;
 
   const System system = Case::make();
   const decltype(Case::builder()(system)) basis = Case::builder()(system);
-
-  /// Masses of all unknowns of the mesh, fixed ones too.
-  Vector mass_of_all_dofs() const {
-    Vector mass(system.num_nodes() * node_dim);
-    for (Index i = 0; i < mass.size(); ++i) mass[i] = system.nodal_mass()[i / node_dim];
-    return mass;
-  }
 };
 TYPED_TEST_SUITE_P(SubspaceBuilderConformance);
 
+TYPED_TEST_P(SubspaceBuilderConformance, DimensionsFitAndNumbersAreFinite) {
+  EXPECT_TRUE(has_dimensions(this->basis, this->system));
+}
+
 TYPED_TEST_P(SubspaceBuilderConformance, ColumnsAreMassOrthonormal) {
-  const Matrix U = this->basis.dense();
-  ASSERT_EQ(U.rows(), this->system.num_nodes() * TestFixture::node_dim);
-  const Matrix gram = U.transpose() * this->mass_of_all_dofs().asDiagonal() * U;
-  EXPECT_TRUE(is_near(gram, Matrix::Identity(U.cols(), U.cols()), 1e-12));
+  EXPECT_TRUE(is_mass_orthonormal(this->basis, this->system));
 }
 
 TYPED_TEST_P(SubspaceBuilderConformance, FixedNodesDoNotMove) {
-  const Matrix U = this->basis.dense();
-  for (const Index v : this->system.numbering().fixed_nodes())
-    EXPECT_TRUE(U.middleRows(v * TestFixture::node_dim, TestFixture::node_dim).isZero(0)) << "node " << v;
+  EXPECT_TRUE(keeps_fixed_nodes(this->basis, this->system));
 }
 
 TYPED_TEST_P(SubspaceBuilderConformance, GivesTheSameBitsAgainWhateverTheNumberOfThreads) {
@@ -111,7 +147,8 @@ TYPED_TEST_P(SubspaceBuilderConformance, AllViewsOfTheBasisAgree) {
   EXPECT_THROW((void)view.project(Vector::Zero(view.full_dim() - 1)), std::invalid_argument);
 }
 
-REGISTER_TYPED_TEST_SUITE_P(SubspaceBuilderConformance, ColumnsAreMassOrthonormal, FixedNodesDoNotMove,
+REGISTER_TYPED_TEST_SUITE_P(SubspaceBuilderConformance, DimensionsFitAndNumbersAreFinite,
+                            ColumnsAreMassOrthonormal, FixedNodesDoNotMove,
                             GivesTheSameBitsAgainWhateverTheNumberOfThreads,
                             FrequenciesAscendAndOneIsTheSmallestInTheSubspace, AllViewsOfTheBasisAgree);
 

@@ -6,17 +6,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace supple {
+namespace supple::test {
 namespace {
-
-using testing::gaussian;
 
 struct NormalEquations {
   Matrix A, G;
   Vector b, c;
 
   NormalEquations(Index rows, Index cols, std::uint64_t seed)
-      : A(testing::uniform(rows, cols, seed)),
+      : A(uniform(rows, cols, seed)),
         G(A.transpose() * A),
         b(A * Vector::Ones(cols) + gaussian(rows, 1, seed + 1)),
         c(A.transpose() * b) {}
@@ -40,7 +38,7 @@ std::vector<Index> positive(const Vector& w) {
 TEST(Exchange, EndsWhereNoPairThatKeepsAllWeightsPositiveLowersTheError) {
   for (std::uint64_t seed : {1, 2, 3, 4, 5}) {
     const NormalEquations problem(40, 20, seed);
-    const Vector w = problem.fit(testing::random_subset(20, 6, seed));
+    const Vector w = problem.fit(random_subset(20, 6, seed));
     const std::vector<Index> start = positive(w),
                              end = exchange(problem.G, problem.c, w, std::vector<char>(20, 0));
     EXPECT_EQ(end.size(), start.size());
@@ -91,4 +89,4 @@ TEST(WeightedSample, DrawsInProportionToTheWeights) {
 }
 
 }  // namespace
-}  // namespace supple
+}  // namespace supple::test
