@@ -1,3 +1,4 @@
+#include <core/check.hpp>
 #include <core/random.hpp>
 #include <reduction/handles.hpp>
 
@@ -51,6 +52,8 @@ Loads handle_loads(const std::vector<Handle>& handles, const Points& rest_positi
   Loads loads;
   for (const Handle& handle : handles)
     for (const Index v : handle.samples) {
+      require(v >= 0 && v < rest_positions.rows(), "a handle names node " + std::to_string(v) + ", expected 0 to " +
+                                                       std::to_string(rest_positions.rows() - 1));
       const Point x = rest_positions.row(v).transpose();
       loads.springs.push_back({v, 2 * handle.weight, handle.motion(x) - x});
     }

@@ -48,6 +48,7 @@ struct Handle {
 };
 
 /// The control energy of some handles as springs of stiffness 2 w to the prescribed positions.
+/// \throws std::invalid_argument for a sample that is no node.
 Loads handle_loads(const std::vector<Handle>& handles, const Points& rest_positions);
 
 }  // namespace supple

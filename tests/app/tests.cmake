@@ -9,7 +9,7 @@ if(TARGET supple)
     target_compile_definitions(test_app PRIVATE SUPPLE_PLUGINS="${PROJECT_BINARY_DIR}/plugins")
     add_dependencies(test_app gent_plugin no_plugin)
   endif()
-  supple_test(real_shapes LABEL slow LINKS nlohmann_json::nlohmann_json
+  supple_test(real_shapes LABEL slow LINKS supple::core nlohmann_json::nlohmann_json
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/real_shapes_test.cpp ${CMAKE_CURRENT_LIST_DIR}/supple_process.cpp)
   target_compile_definitions(test_real_shapes PRIVATE SUPPLE_COMMAND="$<TARGET_FILE:supple>"
     SUPPLE_SHARED_MESHES="${PROJECT_SOURCE_DIR}/../shared/meshes")
