@@ -119,8 +119,53 @@ TEST(HeatSystems, ReducedTangentsAreProjectionsThoughTheyAreNotSymmetric) {
   EXPECT_FALSE(reduced.project(flow).has_stiffness());
 }
 
-// A block of three with an asymmetric model does not exist here; a tangent of few weighted terms has to be right,
-// too.
+/// Independent nodes in ℝ³ that are held and pushed sideways: f = k u + c |u|² a × u. No potential.
+class Whirl {
+ public:
+  static constexpr int stencil_size = 1, node_dim = 3, local_dofs = 3;
+  static constexpr bool symmetric_tangent = false;
+
+  explicit Whirl(Index count) : nodes_(count) { std::iota(nodes_.begin(), nodes_.end(), Index{0}); }
+  Index num_nodes() const { return num_components(); }
+  Index num_components() const { return static_cast<Index>(nodes_.size()); }
+  std::span<const Index, 1> stencil(Index i) const { return std::span<const Index, 1>(&nodes_[i], 1); }
+  Local<3> force(Index, const Local<3>& u) const { return k * u + c * u.squaredNorm() * axis * u; }
+  LocalMatrix<3> stiffness(Index, const Local<3>& u) const {
+    return k * LocalMatrix<3>::Identity() + c * (u.squaredNorm() * axis + 2 * axis * u * u.transpose());
+  }
+
+ private:
+  static constexpr double k = 40, c = 900;
+  const Matrix3<double> axis =
+      (Matrix3<double>() << 0, -0.5, 2, 0.5, 0, -1, -2, 1, 0).finished();  // a × for (1, 2, ½)
+  std::vector<Index> nodes_;
+};
+static_assert(ForceModel<Whirl> && !PotentialModel<Whirl>);
+
+// The same for W ⊗ I₃, where tangents are summed by pairs of axes.
+TEST(ReducedSystems, TangentsOfBlocksNeedNotBeSymmetricEither) {
+  const auto system =
+      std::make_shared<const FullSystem<Whirl>>(Whirl(21), Vector::LinSpaced(21, 0.5, 2.5), std::vector<Index>{4, 9});
+  auto basis = std::make_shared<NodalBasis>(NodalBasis{random_matrix(21, 4, 1, 3), {}});
+  for (const Index v : {4, 9}) basis->W.row(v).setZero();
+  const GalerkinSystem<Whirl, NodalBasis> galerkin(system, basis);
+  std::vector<Index> all(21);
+  std::iota(all.begin(), all.end(), Index{0});
+  const ReducedSystem<Whirl, NodalBasis> reduced(system->shared_model(), basis, all, Vector::Ones(21),
+                                                 project_stiffness(*basis, *system), system->nodal_mass());
+  const Matrix full = basis->dense();
+  Matrix U(system->dim(), 12);
+  for (Index j = 0; j < 12; ++j) U.col(j) = system->restrict(full.col(j));
+  const Vector q = random_vector(12, 0.2, 6);
+  const Matrix K = U.transpose() * (system->stiffness(U * q) * U);
+  ASSERT_GT((K - K.transpose()).norm(), 0.1 * K.norm());
+  Matrix K_galerkin;
+  galerkin.stiffness(q, K_galerkin);
+  EXPECT_TRUE(is_near(K_galerkin, K, 1e-12 * K.norm()));
+  EXPECT_TRUE(is_near(reduced.stiffness(q), K, 1e-12 * K.norm()));
+  EXPECT_TRUE(is_near(reduced.force(q), U.transpose() * system->force(U * q), 1e-12 * K.norm()));
+}
+
 TEST(HeatSystems, SumsWeightedTets) {
   const HeatedBar bar;
   const auto basis = std::make_shared<const DenseBasis>(DenseBasis{random_matrix(bar.mesh.num_nodes(), 4, 1, 3), {}});
