@@ -380,6 +380,11 @@ TEST_F(ReduceCommandTest, LoadsMaterialsOfOnesOwn) {
   expect_refusal({"info", "bar.supple"}, {"bar.supple", "'gent'", "--plugin"});
   expect_refusal({"simulate", "bar.supple"}, {"bar.supple", "'gent'"});
   EXPECT_GT(report({"simulate", "bar.supple", "--plugin", plugin, "--time", "0.1"})["steps"], 0);
+  const json springs = report(small({"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets"}));
+  EXPECT_LT(springs["training_error"], 0.5);
+  expect_refusal(small({"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets", "--parameter",
+                        "modulus=-1"}),
+                 {"spring-tets", "not positive"});
   expect_refusal(small({"--plugin", "nowhere.so"}), {"nowhere.so", "no such file"});
   expect_refusal(small({"--plugin", SUPPLE_PLUGINS "/libno_plugin.so"}), {"libno_plugin.so", "not a plug-in"});
 }

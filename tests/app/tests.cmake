@@ -7,7 +7,7 @@ if(TARGET supple)
   add_dependencies(test_app supple)
   if(TARGET gent_plugin)
     target_compile_definitions(test_app PRIVATE SUPPLE_PLUGINS="${PROJECT_BINARY_DIR}/plugins")
-    add_dependencies(test_app gent_plugin no_plugin)
+    add_dependencies(test_app gent_plugin no_plugin spring_tets_plugin)
   endif()
   supple_test(real_shapes LABEL slow LINKS supple::core nlohmann_json::nlohmann_json
     SOURCES ${CMAKE_CURRENT_LIST_DIR}/real_shapes_test.cpp ${CMAKE_CURRENT_LIST_DIR}/supple_process.cpp)

@@ -1,5 +1,6 @@
 #include <physics/plugin.hpp>
 #include <physics/solid.hpp>
+#include <testing/force_model_conformance.hpp>
 #include <tests/support/meshes.hpp>
 
 #include <gmock/gmock.h>
@@ -7,6 +8,17 @@
 #include <fstream>
 
 namespace supple::test {
+
+/// An element that comes from a plug-in.
+struct PluginElement {
+  static constexpr double length = 0.1;
+  static AnyModel<4> make() {
+    load_plugin(SUPPLE_PLUGINS "/libspring_tets_plugin.so");
+    return *material_law("spring-tets").tets(kuhn_box(2, 1, 1, length), RowMatrix::Constant(1, 1, 1e5), {});
+  }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(OfAPlugin, ForceModelConformance, PluginElement);
+
 namespace {
 
 using testing::AllOf;

@@ -19,9 +19,9 @@ if(TARGET gent_plugin)  # an example
     supple_build_options(${plugin})
     set_target_properties(${plugin} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/plugins)
   endforeach()
-  supple_test(plugin LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/plugin_test.cpp LINKS supple::physics)
+  supple_test(plugin LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/plugin_test.cpp LINKS supple::physics supple::testing)
   target_compile_definitions(test_plugin PRIVATE SUPPLE_PLUGINS="${PROJECT_BINARY_DIR}/plugins")
-  add_dependencies(test_plugin no_plugin other_version twice gent_plugin)
+  add_dependencies(test_plugin no_plugin other_version twice gent_plugin spring_tets_plugin)
 endif()
 supple_test(heat LABEL unit LINKS supple::physics
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/first_order_test.cpp ${CMAKE_CURRENT_LIST_DIR}/heat_conduction_test.cpp
