@@ -104,10 +104,11 @@ struct MixedBox {
   static constexpr double length = 0.1;
   TetMesh all = perturbed(kuhn_box(4, 2, 2, length), 0.1 * length, 14);
   HexMesh hexes{all.nodes, {}};
-  TetMesh tets{all.nodes, {}};
+  TetMesh tets;
   std::vector<SpringModel::Ends> springs;
 
   MixedBox() {
+    tets.nodes = all.nodes;
     const HexMesh cubes = hex_box(4, 2, 2, {1, 1, 1});  // numbers nodes and cells alike
     for (Index cube = 0; cube < cubes.num_cells(); ++cube) {
       if (cube % 4 < 2)
