@@ -17,10 +17,11 @@ SelectorRun run_selector(const SelectionStudy& study, const std::string& selecto
                          std::uint64_t seed, const Progress& progress) {
   SelectionRequest request(size);
   request.progress = progress;
+  const double before = processor_seconds();
   const Selection selection = select_by_name(selector, study.problem(), request, seed);
-  SelectorRun run{selector, size, seed, 0, selection.report, study.measure(selection)};
-  run.points = static_cast<Index>((selection.weights.array() != 0).count());
-  return run;
+  const double used = processor_seconds() - before;
+  const auto points = static_cast<Index>((selection.weights.array() != 0).count());
+  return {selector, size, seed, points, used, selection.report, study.measure(selection)};
 }
 
 std::string description(const CompareSelectorsCommand& command, const ReduceOptions& options, const Body& body,
@@ -64,15 +65,16 @@ void CompareSelectorsCommand::run() const {
   std::vector<SelectorRun> results;
   for (const std::string& selector : selectors)
     for (const Index size : sizes)
-      for (Index k = 0; k < runs; ++k)
+      for (Index k = 0; k < runs; ++k) {
         results.push_back(run_selector(study, selector, size, seed + static_cast<std::uint64_t>(k), progress_bar()));
+        if (!output.empty()) write_runs(output / "runs.csv", results, study.scenes());  // hours of work survive an end
+      }
   clear_progress();
 
   const std::vector<SelectorSummary> summaries = summarize(results);
   const std::string table = markdown_table(summaries, study.scenes()), title = "Selectors on " + mesh,
                     text = description(*this, options, body, study);
   if (!output.empty()) {
-    write_runs(output / "runs.csv", results, study.scenes());
     {
       const ExitGuard guard;
       write_file(output / "table.md", "# " + title + "\n\n" + text + "\n\n" + table);

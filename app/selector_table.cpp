@@ -48,7 +48,7 @@ std::vector<std::string> heading(const std::vector<SelectorSummary>& summaries,
     names.insert(names.end(), {"held-out [%]", "at 0.3 [%]", "at 0.1 [%]"});
   names.push_back("softest eigenvalue [%]");
   for (const PullScene& scene : scenes) names.push_back(scene.name + " [%]");
-  names.insert(names.end(), {"selection [s]", "force [µs]"});
+  names.insert(names.end(), {"selection [s]", "processor [s]", "force [µs]"});
   return names;
 }
 
@@ -59,6 +59,7 @@ std::vector<std::string> cells(const SelectorSummary& summary) {
   texts.push_back(cell(summary.softest, summary.runs));
   for (const Spread& error : summary.trajectories) texts.push_back(cell(error, summary.runs));
   texts.push_back(cell(summary.seconds, summary.runs, 1));
+  texts.push_back(cell(summary.processor_seconds, summary.runs, 1));
   texts.push_back(cell(summary.force_seconds, 1, 1e6));
   return texts;
 }
@@ -149,6 +150,7 @@ std::vector<SelectorSummary> summarize(const std::vector<SelectorRun>& runs) {
     summary.training = over([](const SelectorRun& r) { return r.report.training_error; });
     summary.softest = over([](const SelectorRun& r) { return r.measure.softest_eigenvalue; });
     summary.seconds = over([](const SelectorRun& r) { return r.report.seconds; });
+    summary.processor_seconds = over([](const SelectorRun& r) { return r.processor_seconds; });
     summary.force_seconds = over([](const SelectorRun& r) { return r.measure.force_seconds; });
     for (std::size_t k = 0; k < runs[first].measure.held_out.size(); ++k)
       summary.held_out.push_back(over([&](const SelectorRun& r) { return r.measure.held_out[k].second; }));
@@ -179,7 +181,8 @@ Json runs_json(const std::vector<SelectorRun>& runs) {
                     {"force_seconds", run.measure.force_seconds},
                     {"iterations", run.report.iterations},
                     {"columns_evaluated", run.report.columns_evaluated},
-                    {"seconds", run.report.seconds}});
+                    {"seconds", run.report.seconds},
+                    {"processor_seconds", run.processor_seconds}});
   }
   return json;
 }
@@ -192,7 +195,7 @@ void write_runs(const std::filesystem::path& path, const std::vector<SelectorRun
   columns.push_back({"softest_eigenvalue"});
   for (const PullScene& scene : scenes) columns.push_back({"trajectory_error " + scene.name});
   columns.insert(columns.end(),
-                 {{"seconds", "s"}, {"force", "s"}, {"iterations"}, {"columns_evaluated"}, {"status"}});
+                 {{"seconds", "s"}, {"processor_seconds", "s"}, {"force", "s"}, {"iterations"}, {"columns_evaluated"}, {"status"}});
   CsvTable table(columns);
   for (const SelectorRun& run : runs) {
     std::vector<std::string> row{run.selector, std::to_string(run.size), std::to_string(run.seed),
@@ -200,7 +203,7 @@ void write_runs(const std::filesystem::path& path, const std::vector<SelectorRun
     for (const auto& [share, error] : run.measure.held_out) row.push_back(exact(error));
     row.push_back(exact(run.measure.softest_eigenvalue));
     for (const double error : run.measure.trajectory_errors) row.push_back(exact(error));
-    row.insert(row.end(), {exact(run.report.seconds), exact(run.measure.force_seconds),
+    row.insert(row.end(), {exact(run.report.seconds), exact(run.processor_seconds), exact(run.measure.force_seconds),
                            std::to_string(run.report.iterations), std::to_string(run.report.columns_evaluated),
                            std::string(to_string(run.report.status))});
     table.add_cells(std::move(row));
@@ -241,7 +244,11 @@ std::vector<std::pair<std::string, std::string>> draw_selector_plots(const std::
     return 100 * (held_out ? s.held_out.front().median : s.training.median);
   };
   const std::string measured = held_out ? "held-out force error [%]" : "training force error [%]";
-  const Axis sizes{.label = "components s", .scale = Scale::Log}, errors{.label = measured, .scale = Scale::Log};
+  Axis sizes{.label = "components s", .scale = Scale::Log};
+  for (const SelectorRun& run : runs) sizes.ticks.push_back(static_cast<double>(run.size));
+  std::ranges::sort(sizes.ticks);
+  sizes.ticks.erase(std::ranges::unique(sizes.ticks).begin(), sizes.ticks.end());
+  const Axis errors{.label = measured, .scale = Scale::Log};
   draw("error-size.svg", "Error against size: medians over seeds.",
        {.x = sizes, .y = errors, .series = lines(runs, size, error)});
   draw("error-time.svg", "Error against the time of selection, a point for each size.",
@@ -284,7 +291,7 @@ void write_selector_page(const std::filesystem::path& folder, const std::string&
   page += "<div class=\"wide\">\n<table>\n<thead>" + row(heading(summaries, scenes), "th") + "</thead>\n<tbody>\n";
   for (const SelectorSummary& summary : summaries) page += row(cells(summary), "td");
   page += "</tbody>\n</table>\n</div>\n<p>Medians over seeds, the range in brackets. The softest eigenvalue is that of the fitted "
-          "stiffness at rest, relative to the exact one.</p>\n</body>\n</html>\n";
+          "stiffness at rest, relative to the exact one. Processor time is that of all threads.</p>\n</body>\n</html>\n";
   const ExitGuard guard;
   write_file(folder / "index.html", page);
 }

@@ -15,7 +15,8 @@ struct SelectorRun {
   std::string selector;
   Index size = 0;  ///< asked for
   std::uint64_t seed = 0;
-  Index points = 0;  ///< used
+  Index points = 0;              ///< used
+  double processor_seconds = 0;  ///< of all threads while selecting
   SelectionReport report;
   SelectionMeasure measure;
 };
@@ -29,7 +30,7 @@ struct Spread {
 struct SelectorSummary {
   std::string selector;
   Index size = 0, runs = 0;
-  Spread training, softest, seconds, force_seconds;
+  Spread training, softest, seconds, processor_seconds, force_seconds;
   std::vector<Spread> held_out;      ///< as in SelectionMeasure
   std::vector<Spread> trajectories;  ///< one for each scene
 };

@@ -1,6 +1,7 @@
 #pragma once
 /// \file A pack of eight numbers that behaves like one: the second scalar type of every element formula.
 
+#include <core/eigen_scalar.hpp>
 #include <core/types.hpp>
 
 #include <cmath>
@@ -157,21 +158,7 @@ inline bool any_positive(double a) {
 }  // namespace supple
 
 template <>
-struct Eigen::NumTraits<supple::Pack> : Eigen::NumTraits<double> {
-  using Real = supple::Pack;
-  using NonInteger = supple::Pack;
-  using Nested = supple::Pack;
-  using Literal = double;
-  enum {
-    IsComplex = 0,
-    IsInteger = 0,
-    IsSigned = 1,
-    RequireInitialization = 0,
-    ReadCost = 1,
-    AddCost = 1,
-    MulCost = 1
-  };
-};
+struct Eigen::NumTraits<supple::Pack> : supple::RealScalarTraits<supple::Pack> {};
 template <typename BinaryOp>
 struct Eigen::ScalarBinaryOpTraits<supple::Pack, double, BinaryOp> {
   using ReturnType = supple::Pack;

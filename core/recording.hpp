@@ -1,6 +1,7 @@
 #pragma once
 /// \file Formulas recorded once, differentiated exactly, and run as straight-line programs over numbers or packs.
 
+#include <core/eigen_scalar.hpp>
 #include <core/pack.hpp>
 #include <core/types.hpp>
 
@@ -192,18 +193,4 @@ void Program::run(const Real* inputs, Real* outputs) const {
 }  // namespace supple
 
 template <>
-struct Eigen::NumTraits<supple::Recorded> : Eigen::NumTraits<double> {
-  using Real = supple::Recorded;
-  using NonInteger = supple::Recorded;
-  using Nested = supple::Recorded;
-  using Literal = double;
-  enum {
-    IsComplex = 0,
-    IsInteger = 0,
-    IsSigned = 1,
-    RequireInitialization = 0,
-    ReadCost = 1,
-    AddCost = 1,
-    MulCost = 1
-  };
-};
+struct Eigen::NumTraits<supple::Recorded> : supple::RealScalarTraits<supple::Recorded> {};

@@ -10,7 +10,10 @@ struct Gent {
   Real mu, limit, bulk;  // shear modulus [Pa], largest I₁ − 3, bulk modulus [Pa]
   static constexpr std::array parameter_names{"mu", "limit", "bulk"};
 
-  static Gent from(const supple::IsotropicModuli& m) { return {m.shear(), 20, m.bulk()}; }
+  static Gent from(const supple::IsotropicModuli& m) {
+    m.check();
+    return {m.shear(), 20, m.bulk()};
+  }
 
   Real energy(const supple::Matrix3<Real>& F) const {
     using std::log, std::pow, supple::where_positive;

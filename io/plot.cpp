@@ -145,10 +145,13 @@ std::string axis_commands(const char* name, const Axis& axis) {
   std::string commands = "set " + x + "label " + gnuplot_string(axis.label) + " noenhanced\n";
   commands += "set " + x + "range [" + (axis.low ? text(*axis.low) : "*") + ":" +
               (axis.high ? text(*axis.high) : "*") + "]\n";
-  if (axis.scale == Scale::Log)
+  if (axis.scale == Scale::Log && axis.ticks.empty())
     commands += "set logscale " + x + " 10\nset format " + x + " '10^{%L}'\nset m" + x + "tics 10\n";
   else
-    commands += "set format " + x + " '%.6g'\n";
+    commands += (axis.scale == Scale::Log ? "set logscale " + x + "\n" : "") + "set format " + x + " '%.6g'\n";
+  std::string ticks;
+  for (const double tick : axis.ticks) ticks += (ticks.empty() ? "" : ", ") + text(tick);
+  if (!ticks.empty()) commands += "set " + x + "tics (" + ticks + ")\n";
   return commands;
 }
 

@@ -17,6 +17,7 @@ struct Axis {
   std::string label;  ///< with the unit, as "time [s]"
   Scale scale = Scale::Linear;
   std::optional<double> low = {}, high = {};  ///< ends; fitted to the data unless given
+  std::vector<double> ticks = {};             ///< where numbers stand; chosen unless given
 };
 
 enum class PlotStyle {

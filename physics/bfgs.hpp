@@ -68,7 +68,7 @@ BfgsReport bfgs_minimize(O& objective, SpdSolver<typename O::MatrixType>& solver
                          const BfgsOptions& options = {}) {
   BfgsReport report;
   detail::BfgsMemory memory;
-  typename O::MatrixType H;
+  detail::ShiftedHessian<typename O::MatrixType> hessian;
   Vector g(u.size()), g_trial(u.size()), trial(u.size());
   objective.gradient(u, g);
   double value = objective.value(u), scale = objective.scale(u);
@@ -84,7 +84,7 @@ BfgsReport bfgs_minimize(O& objective, SpdSolver<typename O::MatrixType>& solver
     if (report.iterations == options.max_iterations) return finish(Status::MaxIterations);
     ++report.iterations;
     if (options.refresh_after > 0 && memory.size() >= options.refresh_after) {
-      if (!detail::factorize_hessian(objective, solver, H, u)) return finish(Status::Stagnated);
+      if (!hessian.factorize(objective, solver, u)) return finish(Status::Stagnated);
       memory.clear();
       ++report.refreshes;
     }

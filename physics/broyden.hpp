@@ -31,7 +31,7 @@ BroydenReport broyden_solve(O& objective, SpdSolver<typename O::MatrixType>& sol
   BroydenReport report;
   Vector g(u.size()), g_trial(u.size());
   objective.gradient(u, g);
-  typename O::MatrixType H;
+  detail::ShiftedHessian<typename O::MatrixType> hessian;
   std::vector<Vector> steps;  // s_0 … s_k since the last refresh
   std::vector<double> squared_norms;
   // Progress is judged by ‖g‖ itself: far away the scale grows as fast, and ‖g‖ / scale tells nothing.
@@ -70,7 +70,7 @@ BroydenReport broyden_solve(O& objective, SpdSolver<typename O::MatrixType>& sol
       u = trial;
       g = g_trial;
     }
-    const bool decreased = detail::newton_step(objective, solver, H, u, g);
+    const bool decreased = detail::newton_step(objective, solver, hessian, u, g);
     objective.gradient(u, g);
     norm = first_norm = g.norm();
     scale = objective.scale(u);

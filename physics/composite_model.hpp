@@ -160,11 +160,7 @@ class TermPack<CompositeModel<Models...>> {
     }
   }
   TermPack(const std::shared_ptr<const Composite>& model, Index component)
-      : TermPack(model, [&] {
-          PackIndices lanes;
-          lanes.fill(component);
-          return lanes;
-        }()) {}
+      : TermPack(model, one_component(component)) {}
 
   Pack energy(const Displacements& u) const requires PotentialModel<Composite> {
     return evaluate(Pack(0.0), u, [](const auto& terms, const auto& own, Pack& e) { e = terms.energy(own); },

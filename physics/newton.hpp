@@ -43,27 +43,43 @@ inline double relative(double norm, double scale) {
   return norm == 0 ? 0 : norm / scale;
 }
 
-/// H(u), shifted by multiples of the metric until it is positive definite, into the solver. False if that fails.
-template <SmoothObjective O>
-bool factorize_hessian(O& objective, SpdSolver<typename O::MatrixType>& solver, typename O::MatrixType& H, VectorIn u) {
-  objective.hessian(u, H);
-  const Vector& metric = objective.metric();
-  for (double shift = 0; !solver.factorize(H);) {
-    const double more = shift == 0 ? 2e-3 * H.norm() / metric.norm() : 9 * shift;
-    if (!(more > 0) || !std::isfinite(more)) return false;
-    add_diagonal(H, more * metric);
-    shift += more;
+/// Hessians, shifted by a multiple of the metric where that makes them positive definite. The shift is as small as it
+/// can cheaply be, or steps along soft directions would be short: the last one is the guess for the next.
+/// \see Wächter & Biegler 2006, Algorithm IC.
+template <typename MatrixType>
+class ShiftedHessian {
+ public:
+  /// H(u) into the solver. False if no shift makes it definite.
+  template <SmoothObjective O>
+  bool factorize(O& objective, SpdSolver<MatrixType>& solver, VectorIn u) {
+    objective.hessian(u, H_);
+    const Vector& metric = objective.metric();
+    const double unit = H_.norm() / metric.norm();
+    double shift = 0;
+    while (!solver.factorize(H_)) {
+      const bool first = last_shift_ == 0;
+      const double next = shift > 0 ? (first ? 100 : 8) * shift : first ? 1e-8 : std::max(1e-14, last_shift_ / 3);
+      if (!(unit > 0) || !std::isfinite(next * unit)) return false;
+      add_diagonal(H_, (next - shift) * unit * metric);
+      shift = next;
+    }
+    if (shift > 0) last_shift_ = shift;
+    return true;
   }
-  return true;
-}
+  const MatrixType& matrix() const { return H_; }  ///< as it was factorised
+
+ private:
+  MatrixType H_;
+  double last_shift_ = 0;  // over ‖H‖ / ‖metric‖
+};
 
 /// One step from u along −H⁻¹ g, shortened until φ decreases enough (Armijo) unless the full step already
 /// reduces ‖g‖, with H shifted as above. g is updated to the
 /// new u. Returns false if no decrease was found (u stays).
 template <SmoothObjective O>
-bool newton_step(O& objective, SpdSolver<typename O::MatrixType>& solver, typename O::MatrixType& H,
-                 Vector& u, Vector& g) {
-  if (!factorize_hessian(objective, solver, H, u)) return false;
+bool newton_step(O& objective, SpdSolver<typename O::MatrixType>& solver,
+                 ShiftedHessian<typename O::MatrixType>& hessian, Vector& u, Vector& g) {
+  if (!hessian.factorize(objective, solver, u)) return false;
   const Vector step = -solver.solve(g);
   const double slope = g.dot(step);
   if (!std::isfinite(slope) || slope >= 0) return false;
@@ -98,7 +114,7 @@ bool newton_step(O& objective, SpdSolver<typename O::MatrixType>& solver, typena
 template <SmoothObjective O>
 Report newton_minimize(O& objective, SpdSolver<typename O::MatrixType>& solver, Vector& u,
                        const NewtonOptions& options = {}) {
-  typename O::MatrixType H;
+  detail::ShiftedHessian<typename O::MatrixType> hessian;
   Vector g(u.size());
   objective.gradient(u, g);
   Report report;
@@ -107,7 +123,7 @@ Report newton_minimize(O& objective, SpdSolver<typename O::MatrixType>& solver, 
     if (!std::isfinite(report.residual)) return report.status = Status::NotFinite, report;
     if (report.residual <= options.tolerance) return report.status = Status::Converged, report;
     if (report.iterations == options.max_iterations) return report.status = Status::MaxIterations, report;
-    if (!detail::newton_step(objective, solver, H, u, g)) {
+    if (!detail::newton_step(objective, solver, hessian, u, g)) {
       objective.gradient(u, g);
       return report.status = Status::Stagnated, report;
     }

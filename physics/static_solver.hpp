@@ -63,11 +63,11 @@ class StaticSolver {
 
  private:
   void prepare(Equilibrium<System>& objective) {
-    MatrixType H;  // with the shift that made it definite, if any
-    if (!detail::factorize_hessian(objective, solver_, H, Vector::Zero(system_.dim())))
+    detail::ShiftedHessian<MatrixType> hessian;
+    if (!hessian.factorize(objective, solver_, Vector::Zero(system_.dim())))
       throw SolverError("the stiffness at rest is not finite");
     if constexpr (std::same_as<MatrixType, Matrix>)
-      if (options_.method == StaticMethod::Nlopt) factor_ = H.llt().matrixL();
+      if (options_.method == StaticMethod::Nlopt) factor_ = hessian.matrix().llt().matrixL();
     prepared_stiffness_ = objective.load().stiffness;
     prepared_ = true;
   }

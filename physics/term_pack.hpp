@@ -36,6 +36,13 @@ inline PackIndices consecutive_components(Index first, Index count) {
   return lanes;
 }
 
+/// One component, for eight states of it.
+inline PackIndices one_component(Index component) {
+  PackIndices lanes;
+  lanes.fill(component);
+  return lanes;
+}
+
 /// Eight components of a model, ready to be evaluated together; or one component in eight states.
 template <ForceModel F>
 class TermPack {
@@ -43,9 +50,8 @@ class TermPack {
   using Displacements = Local<F::local_dofs, Pack>;
 
   /// The same component in every lane.
-  TermPack(std::shared_ptr<const F> model, Index component) : model_(std::move(model)) {
-    components_.fill(component);
-  }
+  TermPack(std::shared_ptr<const F> model, Index component)
+      : TermPack(std::move(model), one_component(component)) {}
 
   TermPack(std::shared_ptr<const F> model, const PackIndices& components)
       : model_(std::move(model)), components_(components) {}

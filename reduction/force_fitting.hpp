@@ -241,7 +241,8 @@ class ForceFitting {
     explicit Columns(const ForceFitting& fitting) : fitting_(&fitting) {}
 
     void evaluate(Index k, const double* u, Index stride) {
-      const TermPack<Model> terms(fitting_->model_, indices_[k]);
+      // as eight components, which an AnyModel keeps, while of one it makes the terms at each call
+      const TermPack<Model> terms(fitting_->model_, one_component(indices_[k]));
       for (Index pack = 0; pack < H_.cols() / Pack::size; ++pack) {
         Local<Model::local_dofs, Pack> u_k;
         for (int c = 0; c < first_dof; ++c) u_k[c] = Pack(0.0);

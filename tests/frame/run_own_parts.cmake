@@ -1,4 +1,4 @@
-# Installs the build, builds parts of a user's own against it, runs them, and loads one into the installed command.
+# Installs the build, builds parts of a user's own against it, runs and tests them, and loads one into the installed command.
 # Arguments: BUILD, SOURCE, PARTS, WORK, GENERATOR.
 file(REMOVE_RECURSE ${WORK})
 function(run)
@@ -13,6 +13,7 @@ run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFI
     -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS=-O1 -DPARTS=${PARTS})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/own_parts)
+run(${WORK}/build/own_tests)
 if(EXISTS ${WORK}/prefix/bin/supple)
   run(${WORK}/prefix/bin/supple reduce bar:8x2x2 --fix x<=0 --plugin ${WORK}/build/libgent_plugin.so --material gent
       --parameter limit=5 --modes 4 --poses 20 --points 30 --held-out 10 -o bar.supple)

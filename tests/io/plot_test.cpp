@@ -104,6 +104,14 @@ TEST_F(PlotTest, LogAxesHavePowersOfTen) {
   EXPECT_THAT(svg(), HasSubstr("dy=\"-"));  // an exponent is raised
 }
 
+TEST_F(PlotTest, NumbersStandAtTheGivenTicks) {
+  SKIP_WITHOUT_GNUPLOT;
+  plot.x.scale = Scale::Log;
+  plot.x.ticks = {1.25, 1.5};
+  const std::string text = svg();
+  for (const char* number : {">1.25<", ">1.5<"}) EXPECT_THAT(text, HasSubstr(number));
+}
+
 TEST_F(PlotTest, RefusesWhatCannotBeShown) {
   const auto refuse = [&](const Plot& wrong, const std::string& reason) {
     EXPECT_THAT([&] { draw_plot(folder / "plot.svg", wrong); },

@@ -177,6 +177,19 @@ TEST(Newton, LeavesAMaximumAndASaddleForAMinimum) {
   EXPECT_NEAR(std::abs(u[1]), std::sqrt(0.5), 1e-9);
 }
 
+TEST(Newton, TakesLongStepsAlongSoftDirectionsWhereTheTangentIsIndefinite) {
+  // a thin shell in small: stretching 10⁸ times as stiff as the direction in which it buckles
+  DenseObjective shell(
+      2, [](VectorIn u) { return 0.5e8 * u[0] * u[0] + std::pow(u[1] * u[1] - 1, 2) / 4; },
+      [](VectorIn u) { return Vector((Vector(2) << 1e8 * u[0], u[1] * (u[1] * u[1] - 1)).finished()); },
+      [](VectorIn u) { return Matrix((Matrix(2, 2) << 1e8, 0, 0, 3 * u[1] * u[1] - 1).finished()); });
+  SpdSolver<Matrix> solver;
+  Vector u = (Vector(2) << 1e-3, 0.01).finished();
+  const Report report = newton_minimize(shell, solver, u, {.tolerance = 1e-10, .max_iterations = 40});
+  EXPECT_EQ(report.status, Status::Converged);
+  EXPECT_NEAR(u[1], 1, 1e-8);
+}
+
 TEST(Newton, ConvergesFromACompressedStateWithAnIndefiniteTangent) {
   const Cantilever<StVenantKirchhoff> c;
   // squeezed along x to 60 %: St. Venant–Kirchhoff has lost its stability there (below 1/√3 even in 1D)

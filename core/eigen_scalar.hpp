@@ -1,0 +1,26 @@
+#pragma once
+/// \file What Eigen must know of a scalar type that stands for a double.
+
+#include <Eigen/Core>
+
+namespace supple {
+
+/// Base of Eigen::NumTraits<Scalar>.
+template <typename Scalar>
+struct RealScalarTraits : Eigen::NumTraits<double> {
+  using Real = Scalar;
+  using NonInteger = Scalar;
+  using Nested = Scalar;
+  using Literal = double;
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 0,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = 1
+  };
+};
+
+}  // namespace supple

@@ -1,0 +1,7 @@
+// The installed suites, on a material of one's own.
+#include <gent.hpp>
+#include <testing/material_conformance.hpp>
+
+namespace supple::test {
+INSTANTIATE_TYPED_TEST_SUITE_P(Gent, MaterialConformance, FromModuli<Gent>);
+}
