@@ -211,6 +211,51 @@ bool pushes_back(const Material& material) {
   return true;
 }
 
+/// First Piola–Kirchhoff stress [Pa] along a bar pulled to a stretch, its sides free.
+template <typename Material>
+double tension(const Material& material, double stretch) {
+  const auto state = [&](double side) -> Mat3 { return Point(stretch, side, side).asDiagonal(); };
+  double thin = 0.5, thick = 1.5;  // the stress on the sides grows with their stretch
+  while (thick - thin > 1e-15) {
+    const double side = 0.5 * (thin + thick);
+    (stress(material, state(side))(1, 1) < 0 ? thin : thick) = side;
+  }
+  return stress(material, state(thin))(0, 0);
+}
+
+TEST(NearIncompressibility, TensionTendsToTheIncompressibleClosedForm) {
+  constexpr double mu = 1e5, stretch = 1.4;
+  const auto I1 = [](double x) { return x * x + 2 / x; };
+  const auto pull = [](double x) { return x - 1 / (x * x); };  // P = 2 ∂ψ/∂I₁ (λ − λ⁻²) of laws in I₁ alone
+  const auto follows = [&](const std::string& law, const auto& material, const auto& closed) {
+    double before = 0;
+    for (const double nu : {0.49, 0.499, 0.4999}) {
+      const auto some = material(IsotropicModuli{.young = 2 * mu * (1 + nu), .poisson = nu});
+      const double error = std::abs(tension(some, stretch) / closed(some) - 1);
+      EXPECT_LT(error, 3 * (0.5 - nu)) << law << " at ν = " << nu;
+      if (before > 0) {
+        EXPECT_NEAR(before / error, 10, 1.5) << law << " at ν = " << nu << ": error of first order in ½ − ν";
+      }
+      before = error;
+    }
+  };
+  follows("neo-hookean", [](auto m) { return NeoHookean<double>::from(m); }, [&](const auto&) { return mu * pull(stretch); });
+  follows(
+      "stable-neo-hookean", [](auto m) { return StableNeoHookean<double>::from(m); },
+      [&](const auto& some) { return some.mu * (1 - 1 / (I1(stretch) + 1)) * pull(stretch); });
+  follows(
+      "mooney-rivlin", [](auto m) { return MooneyRivlin<double>::from(m); },
+      [&](const auto& some) { return 2 * (some.c10 + some.c01 / stretch) * pull(stretch); });
+  follows(
+      "ogden", [](auto m) { return Ogden<double>::from(m); },
+      [&](const auto& o) {
+        const auto term = [&](double mu_p, double alpha) {
+          return mu_p * (std::pow(stretch, alpha - 1) - std::pow(stretch, -alpha / 2 - 1));
+        };
+        return term(o.mu1, o.alpha1) + term(o.mu2, o.alpha2) + term(o.mu3, o.alpha3);
+      });
+}
+
 TEST(InvertedElements, ArePushedBackByTheLawsMadeForThem) {
   EXPECT_TRUE(pushes_back(StableNeoHookean<double>::from(moduli)));
   EXPECT_TRUE(pushes_back(Corotational<double>::from(moduli)));
