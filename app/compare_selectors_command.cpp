@@ -87,7 +87,7 @@ void CompareSelectorsCommand::run() const {
   report["version"] = SUPPLE_VERSION;
   report["mesh"] = mesh;
   report["description"] = text;
-  report["options"] = problem_json(*this, options);
+  report["options"] = problem_json(*this, options, body);
   Json scene_list = Json::array();
   for (std::size_t k = 0; k < study.scenes().size(); ++k)
     scene_list.push_back(

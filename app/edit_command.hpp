@@ -14,7 +14,7 @@ struct EditCommand {
   bool full = false;  ///< the unreduced system
   std::optional<std::string> solver;
   std::optional<double> tolerance;
-  std::string frames = "surface";  ///< surface, tets or none
+  std::string frames = "surface";  ///< surface, cells (or tets) or none
   std::filesystem::path output;    ///< folder; empty: only the report
   std::filesystem::path json;
   int threads = 0;

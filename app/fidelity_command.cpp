@@ -63,11 +63,12 @@ double measure(const Body& body) {
   double sum = 0;
   if (const Shell* shell = std::get_if<Shell>(&body)) {
     for (Index t = 0; t < shell->mesh.num_triangles(); ++t) sum += triangle_area(shell->mesh, t);
-  } else {
-    const TetMesh& mesh = std::get<Solid>(body).mesh;
-    for (Index e = 0; e < mesh.num_tets(); ++e) sum += tet_volume(mesh, e);
+    return sum;
   }
-  return sum;
+  return visit_solid(body, [&](const auto& solid) {
+    for (Index e = 0; e < num_cells(solid.mesh); ++e) sum += cell_volume(solid.mesh, e);
+    return sum;
+  });
 }
 
 struct Distance {
@@ -184,7 +185,7 @@ void FidelityCommand::run() const {
   Json report{{"command", "fidelity"}, {"version", SUPPLE_VERSION}, {"mesh", mesh}, {"scene", scene.string()}};
   report["diagonal"] = bounding_box(rest).diagonal();
   report["measure"] = measure(body);
-  report["options"] = problem_json(problem, options);
+  report["options"] = problem_json(problem, options, body);
   report["shapes"] = Json::array();
   for (const Shape& shape : shapes) {
     const Distance off = distance(body, shape.displacement, full.displacement);

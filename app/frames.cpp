@@ -53,6 +53,7 @@ double write_frames(const std::filesystem::path& folder, const std::string& fram
   const Surface surface(model.body);
   const Points rest = surface.rows(nodes);
   const std::filesystem::path list = folder / "series.pvd";
+  const bool all_cells = frames == "cells" || frames == "tets";
   std::optional<VtuSeries> series;
   if (frames != "none") {
     const ExitGuard guard;
@@ -72,9 +73,11 @@ double write_frames(const std::filesystem::path& folder, const std::string& fram
     if (series) {
       const Vector v = frame_velocity(trajectory, model, f);
       const ExitGuard guard;
-      if (const Solid* solid = std::get_if<Solid>(&model.body); solid && frames == "tets")
-        series->add(trajectory.time[f], nodes + as_points(u), solid->mesh.tets,
-                    {.point_data = {vector_field("displacement [m]", u), vector_field("velocity [m/s]", v)}});
+      if (all_cells && !std::holds_alternative<Shell>(model.body))
+        visit_solid(model.body, [&](const auto& solid) {
+          series->add(trajectory.time[f], nodes + as_points(u), cells_of(solid.mesh),
+                      {.point_data = {vector_field("displacement [m]", u), vector_field("velocity [m/s]", v)}});
+        });
       else
         series->add(trajectory.time[f], rest + surface_displacement.back(), surface.triangles,
                     {.point_data = {{"displacement [m]", surface_displacement.back()},

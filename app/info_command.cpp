@@ -11,6 +11,7 @@
 #include <reduction/reduced_model.hpp>
 
 #include <algorithm>
+#include <concepts>
 #include <fstream>
 #include <numbers>
 #include <set>
@@ -37,45 +38,55 @@ std::string joined(const Vector& values, Index most) {
   return text + (values.size() > most ? ", ..." : "");
 }
 
-/// Sum of sizes (volumes, areas) of the elements, worst and mean radius ratio.
+/// Sum of sizes (volumes, areas) of the elements, worst and mean of their shapes.
 struct Shapes {
   double size = 0, worst = 1, mean = 0;
 };
-template <typename Mesh>
-Shapes element_shapes(const Mesh& mesh, Index count, double (*size)(const Mesh&, Index)) {
+template <typename Size, typename Quality>
+Shapes element_shapes(Index count, const Size& size, const Quality& quality_of) {
   Shapes shapes;
   for (Index e = 0; e < count; ++e) {
-    const double quality = radius_ratio(mesh, e);
-    shapes.size += size(mesh, e);
+    const double quality = quality_of(e);
+    shapes.size += size(e);
     shapes.worst = std::min(shapes.worst, quality);
     shapes.mean += quality / static_cast<double>(count);
   }
   return shapes;
 }
 
-Json mesh_json(const TetMesh& mesh, Rows& rows) {
+template <typename Mesh>
+Json mesh_json(const Mesh& mesh, Rows& rows) {
+  constexpr bool is_hex = std::same_as<Mesh, HexMesh>;
+  const std::string kind(cell_name(SolidOf<Mesh>{})), shape = is_hex ? "scaled Jacobian" : "radius ratio";
   const BoundingBox box = bounding_box(mesh.nodes);
-  const auto [volume, worst, mean] = element_shapes(mesh, mesh.num_tets(), tet_volume);
+  const auto [volume, worst, mean] = element_shapes(
+      num_cells(mesh), [&](Index e) { return cell_volume(mesh, e); },
+      [&](Index e) {
+        if constexpr (is_hex)
+          return scaled_jacobian(mesh, e);
+        else
+          return radius_ratio(mesh, e);
+      });
   const Index components = connected_components(mesh).count,
-              faces = static_cast<Index>(boundary_faces(mesh).size());
+              faces = static_cast<Index>(boundary_faces(mesh).size()) / triangles_per_face<Mesh>;
   const Hinges hinges = boundary_hinges(mesh);
   rows.insert(rows.end(), {{"nodes", shown_count(mesh.num_nodes())},
-                           {"tets", shown_count(mesh.num_tets())},
+                           {kind, shown_count(num_cells(mesh))},
                            {"boundary faces", shown_count(faces)},
                            {"size", shown_point(box.extent()) + ", from (" + joined(box.lower, 3) + ")"},
                            {"volume", shown(volume) + " m^3"},
-                           {"radius ratio", "worst " + shown(worst, 2) + ", mean " + shown(mean, 2)},
+                           {shape, "worst " + shown(worst, 2) + ", mean " + shown(mean, 2)},
                            {"components", std::to_string(components)}});
   if (hinges.edges + hinges.nodes > 0)
     rows.emplace_back("hinges",
                       std::to_string(hinges.edges) + " edges, " + std::to_string(hinges.nodes) + " nodes");
   Json json{{"nodes", mesh.num_nodes()},
-            {"tets", mesh.num_tets()},
+            {json_key(kind), num_cells(mesh)},
             {"boundary_faces", faces},
             {"lower", json_numbers(box.lower)},
             {"upper", json_numbers(box.upper)},
             {"volume", volume},
-            {"radius_ratio", {{"worst", worst}, {"mean", mean}}},
+            {json_key(shape), {{"worst", worst}, {"mean", mean}}},
             {"components", components},
             {"hinges", {{"edges", hinges.edges}, {"nodes", hinges.nodes}}},
             {"regions", Json::array()}};
@@ -83,16 +94,18 @@ Json mesh_json(const TetMesh& mesh, Rows& rows) {
     const auto count = std::count(mesh.region.begin(), mesh.region.end(), tag);
     const auto name = mesh.region_names.find(tag);
     const std::string text = name == mesh.region_names.end() ? "" : name->second;
-    json["regions"].push_back({{"tag", tag}, {"name", text}, {"tets", count}});
+    json["regions"].push_back({{"tag", tag}, {"name", text}, {json_key(kind), count}});
     rows.emplace_back("region " + std::to_string(tag),
-                      (text.empty() ? "" : text + ", ") + shown_count(count) + " tets");
+                      (text.empty() ? "" : text + ", ") + shown_count(count) + " " + kind);
   }
   return json;
 }
 
 Json mesh_json(const TriangleMesh& mesh, Rows& rows) {
   const BoundingBox box = bounding_box(mesh.nodes);
-  const auto [area, worst, mean] = element_shapes(mesh, mesh.num_triangles(), triangle_area);
+  const auto [area, worst, mean] = element_shapes(
+      mesh.num_triangles(), [&](Index t) { return triangle_area(mesh, t); },
+      [&](Index t) { return radius_ratio(mesh, t); });
   const Index components = connected_components(mesh).count,
               flaps = static_cast<Index>(interior_edges(mesh).size()),
               boundary = static_cast<Index>(boundary_edges(mesh).size());
@@ -117,7 +130,7 @@ Json mesh_json(const TriangleMesh& mesh, Rows& rows) {
 
 /// One row a material: the parameters of the law, of a shell k_B [J], k_L and k_A [N/m].
 RowMatrix material_parameters(const Body& body) {
-  if (const Solid* solid = std::get_if<Solid>(&body)) return solid->parameters;
+  if (!std::holds_alternative<Shell>(body)) return visit_solid(body, [](const auto& solid) { return solid.parameters; });
   const std::vector<ShellMaterial>& materials = std::get<Shell>(body).materials;
   RowMatrix rows(static_cast<Index>(materials.size()), 3);
   for (Index k = 0; k < rows.rows(); ++k) rows.row(k) << materials[k].bending, materials[k].stretch, materials[k].area;
@@ -143,9 +156,10 @@ Json model_json(const ReducedModel& model, Rows& rows) {
        {"damping", "alpha " + shown(damping.alpha) + " 1/s, beta " + shown(damping.beta) + " s"},
        {"subspace", "dimension " + std::to_string(model.dim()) + ", " + model.subspace_name},
        {"modes", joined(hertz, 8) + " Hz"},
-       {"points", std::to_string(model.indices.size())}});
+       {"points", std::to_string(model.indices.size()) + " " + std::string(component_name(model.body))}});
   Json json{{"dimension", model.dim()},
             {"points", model.indices.size()},
+            {"component", component_name(model.body)},
             {"subspace", model.subspace_name},
             {"law", law(model.body)},
             {"materials", Json::array()},
@@ -195,18 +209,21 @@ void MeshCommand::run() const {
   require_writable(output);
   const NamedMesh named = load_mesh(source);
   const ExitGuard guard;
-  if (const auto* surface = std::get_if<TriangleMesh>(&named.mesh)) {
-    write_vtu(output, surface->nodes, surface->triangles, {});
-    return;
-  }
-  const TetMesh& mesh = std::get<TetMesh>(named.mesh);
-  VtuFields fields;
-  if (!mesh.region.empty()) {
-    RowMatrix region(mesh.num_tets(), 1);
-    for (Index e = 0; e < mesh.num_tets(); ++e) region(e, 0) = mesh.region[e];
-    fields.cell_data.push_back({"region", region});
-  }
-  write_vtu(output, mesh.nodes, mesh.tets, fields);
+  std::visit(
+      [&]<typename Mesh>(const Mesh& mesh) {
+        if constexpr (std::same_as<Mesh, TriangleMesh>) {
+          write_vtu(output, mesh.nodes, mesh.triangles, {});
+        } else {
+          VtuFields fields;
+          if (!mesh.region.empty()) {
+            RowMatrix region(num_cells(mesh), 1);
+            for (Index e = 0; e < num_cells(mesh); ++e) region(e, 0) = mesh.region[e];
+            fields.cell_data.push_back({"region", region});
+          }
+          write_vtu(output, mesh.nodes, cells_of(mesh), fields);
+        }
+      },
+      named.mesh);
 }
 
 }  // namespace supple

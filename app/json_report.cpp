@@ -4,6 +4,7 @@
 #include <core/output_file.hpp>
 #include <io/unit.hpp>
 
+#include <cctype>
 #include <cstdio>
 #include <unistd.h>
 
@@ -19,6 +20,12 @@ void write_json(const std::filesystem::path& path, const Json& report) {
   }
   const ExitGuard guard;
   write_file(path, text);
+}
+
+std::string json_key(std::string_view name) {
+  std::string key(name);
+  for (char& c : key) c = c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return key;
 }
 
 Json json_numbers(VectorIn values) {

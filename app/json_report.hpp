@@ -22,6 +22,8 @@ inline bool is_stdout(const std::filesystem::path& path) {
   return path == "-";
 }
 
+/// The name of a kind of cells or components as a key: "Gauss points" → "gauss_points".
+std::string json_key(std::string_view name);
 Json json_numbers(VectorIn values);
 /// An entry for each iterate of a selector.
 Json json_history(const SelectionReport& report);

@@ -62,7 +62,7 @@ std::string material_help() {
 /// The object and the method of training, for all commands that pose a fitting problem.
 void add_problem(CLI::App& command, ProblemOptions& c) {
   command
-      .add_option("MESH", c.mesh, "Tets (.msh .mesh .node .ele .veg .vtk .vtu), a surface (.obj .off .ply .stl), or a built-in, see below")
+      .add_option("MESH", c.mesh, "Tets or hexahedra (.msh .mesh .node .ele .veg .vtk .vtu), a surface (.obj .off .ply .stl), or a built-in, see below")
       ->required();
   add_plugins(command);
   const auto object = "Object";
@@ -87,6 +87,12 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
                   "Law, parameters, and other values for regions: {\"law\": \"ogden\", \"regions\": {\"bone\": "
                   "{\"young\": \"1 MPa\"}}}")
       ->type_name("FILE.json")
+      ->group(object);
+  command
+      .add_option("--components", c.components,
+                  "What may be selected of hexahedra and quadratic tets: whole cells, or single gauss-points")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"cells", "gauss-points"}))
       ->group(object);
   command.add_option("--damping-alpha", c.damping_alpha, "Rayleigh damping, share of the mass [1/s]")
       ->capture_default_str()
@@ -142,7 +148,7 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
   command.add_option("--norm", c.norm, "Measure of the fitted forces [stiffness; paper: mass]")
       ->check(CLI::IsMember({"mass", "stiffness"}))
       ->group(method);
-  command.add_option("--inverted", c.inverted, "Poses with inverted tets [keep; shrink for laws that are undefined there]")
+  command.add_option("--inverted", c.inverted, "Poses with inverted cells [keep; shrink for laws that are undefined there]")
       ->check(CLI::IsMember({"keep", "shrink", "redraw"}))
       ->group(method);
   command
@@ -165,7 +171,7 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
   reduce.add_option("-o,--output", c.model, "The model's file")->required()->type_name("MODEL")->group(files);
   add_json(reduce, c.json);
   reduce.get_option("--json")->group(files);
-  reduce.add_option("--picture", c.picture, "Picture of the object and the selected tets")
+  reduce.add_option("--picture", c.picture, "Picture of the object and the selected cells")
       ->type_name("FILE.png")
       ->group(files);
   reduce.add_option("--plots", c.plots, "Folder for plots of the errors and of the frequencies")
@@ -173,10 +179,10 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
       ->group(files);
 
   const auto method = "Method";
-  reduce.add_option("--points", c.points, "Largest number of tets that stand for all [150; 1000 with --target-error]")
+  reduce.add_option("--points", c.points, "Largest number of components that stand for all [150; 1000 with --target-error]")
       ->type_name("S")
       ->group(method);
-  reduce.add_option("--target-error", c.target_error, "Take as few tets as reach this training error")
+  reduce.add_option("--target-error", c.target_error, "Take as few components as reach this training error")
       ->type_name("SHARE")
       ->group(method);
   reduce.add_option("--selector", c.selector, "How they are chosen")
@@ -211,9 +217,9 @@ CLI::App& add_simulate(CLI::App& app, SimulateCommand& c) {
                   "Folder for trajectory, energies, pictures and ParaView's series.pvd")
       ->type_name("DIR");
   simulate.add_option("--every", c.every, "A frame after so many steps [at most 100 frames]")->type_name("N");
-  simulate.add_option("--frames", c.frames, "What ParaView gets: surface, tets or none")
+  simulate.add_option("--frames", c.frames, "What ParaView gets: surface, cells or none")
       ->capture_default_str()
-      ->check(CLI::IsMember({"surface", "tets", "none"}));
+      ->check(CLI::IsMember({"surface", "cells", "tets", "none"}));
   simulate
       .add_option("--track", c.track, "Node whose displacement is recorded in every step; may be repeated")
       ->type_name("NODE")
@@ -256,7 +262,7 @@ CLI::App& add_compare_selectors(CLI::App& app, CompareSelectorsCommand& c) {
       ->capture_default_str()
       ->check(CLI::IsMember(known_selectors()))
       ->group(comparison);
-  compare.add_option("--sizes", c.sizes, "Numbers of tets, separated by commas")
+  compare.add_option("--sizes", c.sizes, "Numbers of components, separated by commas")
       ->delimiter(',')
       ->capture_default_str()
       ->group(comparison);
@@ -266,7 +272,7 @@ CLI::App& add_compare_selectors(CLI::App& app, CompareSelectorsCommand& c) {
       ->group(comparison);
   compare
       .add_flag("--trajectories", c.trajectories,
-                "Compare pulled motions, too; their reference evaluates every tet, which takes a minute")
+                "Compare pulled motions, too; their reference evaluates every component, which takes a minute")
       ->group(comparison);
   compare
       .add_option("-o,--output", c.output, "Folder for runs.csv, table.md, plots and the page index.html")
@@ -363,7 +369,7 @@ CLI::App& add_edit(CLI::App& app, EditCommand& c) {
   edit.add_option("--tolerance", c.tolerance, "Residual of a solve against its largest force [1e-6]");
   edit.add_option("--frames", c.frames, "What ParaView gets of every solve")
       ->capture_default_str()
-      ->check(CLI::IsMember({"surface", "tets", "none"}));
+      ->check(CLI::IsMember({"surface", "cells", "tets", "none"}));
   edit.add_option("-o,--output", c.output, "Folder for picture.png, series.pvd, solves.csv, trajectory and report")
       ->type_name("DIR");
   add_json(edit, c.json);

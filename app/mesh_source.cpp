@@ -22,28 +22,23 @@ bool is_surface_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-Index NamedMesh::num_elements() const {
-  if (const auto* surface = std::get_if<TriangleMesh>(&mesh)) return surface->num_triangles();
-  return std::get<TetMesh>(mesh).num_tets();
-}
-
 NamedMesh load_mesh(const std::string& spec) {
   NamedMesh result;
   if (is_builtin(spec) || is_builtin_surface(spec)) {
     result.notes.format = "built-in";
     if (is_builtin(spec))
-      result.mesh = builtin_mesh(spec);
+      std::visit([&](auto&& mesh) { result.mesh = std::move(mesh); }, builtin_solid_mesh(spec));
     else
       result.mesh = builtin_surface(spec);
     return result;
   }
   if (!std::filesystem::exists(spec))
     throw InputError(spec + ": there is no such file, and no built-in mesh of this name (bar, cube, menger, ball, "
-                            "octopus; plate, cylinder, sphere)");
+                            "octopus, hexbox, tet10; plate, cylinder, sphere)");
   if (is_surface_file(spec))
     result.mesh = read_triangle_mesh(spec, &result.notes);
   else
-    result.mesh = read_tet_mesh(spec, &result.notes);
+    std::visit([&](auto&& mesh) { result.mesh = std::move(mesh); }, read_solid_mesh(spec, &result.notes));
   for (const std::string& warning : result.notes.warnings) warn(spec + ": " + warning);
   return result;
 }

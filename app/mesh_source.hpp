@@ -2,7 +2,7 @@
 /// \file Meshes as the command line names them.
 
 #include <io/mesh_notes.hpp>
-#include <physics/tet_mesh.hpp>
+#include <physics/cell_mesh.hpp>
 #include <physics/triangle_mesh.hpp>
 
 #include <string>
@@ -11,17 +11,16 @@
 namespace supple {
 
 struct NamedMesh {
-  std::variant<TetMesh, TriangleMesh> mesh;
+  std::variant<TetMesh, HexMesh, QuadraticTetMesh, TriangleMesh> mesh;
   MeshNotes notes;  ///< of a file; for a built-in only the format
 
   const Points& nodes() const {
     return std::visit([](const auto& m) -> const Points& { return m.nodes; }, mesh);
   }
-  Index num_elements() const;
 };
 
 /// A built-in such as "bar:80x20x10" or "sphere:16", or else a file: a surface by its extension (.obj, .off, .ply,
-/// .stl), anything else tetrahedra.
+/// .stl), anything else a solid.
 /// Tells the terminal of the notes' warnings.
 NamedMesh load_mesh(const std::string& spec);
 

@@ -4,6 +4,8 @@
 #include <io/json_fields.hpp>
 #include <io/node_sets.hpp>
 
+#include <concepts>
+#include <optional>
 #include <set>
 
 namespace supple {
@@ -17,9 +19,14 @@ std::vector<Index> held_nodes(const ProblemOptions& problem, const NamedMesh& na
   fix(select_nodes(nodes, problem.fix));
   for (const std::string& box : problem.fix_box) fix(nodes_in_box(nodes, box));
   for (const std::string& region : problem.fix_region) {
-    const auto* mesh = std::get_if<TetMesh>(&named.mesh);
-    if (!mesh) throw InputError("--fix-region '" + region + "': a surface has no regions");
-    fix(nodes_of_region(*mesh, region));
+    std::visit(
+        [&]<typename Mesh>(const Mesh& mesh) {
+          if constexpr (std::same_as<Mesh, TriangleMesh>)
+            throw InputError("--fix-region '" + region + "': a surface has no regions");
+          else
+            fix(nodes_of_region(mesh, region));
+        },
+        named.mesh);
   }
   for (const std::filesystem::path& file : problem.fix_file) fix(read_node_set(nodes, file));
   return {held.begin(), held.end()};
@@ -77,16 +84,18 @@ const MaterialLaw& named_law(const std::string& name, const std::string& where) 
 }
 
 /// A law and one material for the object, and others for the regions that the file of --materials names.
-void set_materials(const ProblemOptions& problem, Solid& solid) {
+template <typename Mesh>
+void set_materials(const ProblemOptions& problem, SolidOf<Mesh>& solid) {
   std::vector<Material> materials{base_material(problem)};
-  const TetMesh& mesh = solid.mesh;
-  solid.law = problem.law;
-  if (problem.materials) {
-    const JsonFields file = JsonFields::read(*problem.materials);
-    solid.law = file.text_or("law", problem.law);
-    const MaterialLaw& law = named_law(solid.law, problem.materials->string());
-    const Material base = materials[0] = read_material(file, law, materials[0]);
-    if (const auto regions = file.object_if("regions")) {
+  const Mesh& mesh = solid.mesh;
+  std::optional<JsonFields> file;
+  if (problem.materials) file = JsonFields::read(*problem.materials);
+  const bool law_in_file = file && file->contains("law");
+  solid.law = law_in_file ? file->text("law") : problem.law;
+  const MaterialLaw& law = named_law(solid.law, law_in_file ? problem.materials->string() : "--material");
+  if (file) {
+    const Material base = materials[0] = read_material(*file, law, materials[0]);
+    if (const auto regions = file->object_if("regions")) {
       if (mesh.region.empty())
         throw InputError(problem.materials->string() +
                          ": the mesh has no regions, so there is nothing to tell apart");
@@ -102,17 +111,15 @@ void set_materials(const ProblemOptions& problem, Solid& solid) {
             break;
           }
       }
-      for (const int tag : mesh.region) solid.material_of_tet.push_back(material_of_region[tag]);
+      for (const int tag : mesh.region) solid.material_of_cell.push_back(material_of_region[tag]);
     }
-    file.finish();
+    file->finish();
   }
   solid.density = Vector::Constant(1, materials[0].density);
-  if (!solid.material_of_tet.empty()) {
-    solid.density.resize(mesh.num_tets());
-    for (Index e = 0; e < mesh.num_tets(); ++e)
-      solid.density[e] = materials[solid.material_of_tet[e]].density;
+  if (!solid.material_of_cell.empty()) {
+    solid.density.resize(num_cells(mesh));
+    for (Index e = 0; e < num_cells(mesh); ++e) solid.density[e] = materials[solid.material_of_cell[e]].density;
   }
-  const MaterialLaw& law = named_law(solid.law, "--material");
   for (std::size_t k = 0; k < materials.size(); ++k) {
     const std::vector<double> row = law.values(materials[k].moduli, materials[k].parameters);
     solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
@@ -144,7 +151,21 @@ const char* to_text(InvertedPoses rule) {
 Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
   const std::vector<Index> held = held_nodes(problem, named);
   const RayleighDamping damping = read_damping(problem);
-  if (const auto* surface = std::get_if<TriangleMesh>(&named.mesh)) {
+  const bool gauss_points = problem.components == "gauss-points";
+  const auto solid_body = [&]<typename Mesh>(const Mesh& mesh) -> Body {
+    SolidOf<Mesh> solid{.mesh = mesh, .fixed_nodes = held, .damping = damping};
+    if (problem.thickness)
+      throw InputError("--thickness is for surfaces; the mesh has " + std::string(cell_name(Body(SolidOf<Mesh>{}))));
+    if (gauss_points) {
+      if constexpr (std::same_as<Mesh, TetMesh>)
+        throw InputError("--components gauss-points is for hexahedra and quadratic tets; a linear tet has one Gauss point");
+      solid.component = SolidComponent::GaussPoint;
+    }
+    set_materials(problem, solid);
+    return solid;
+  };
+  const auto shell_body = [&](const TriangleMesh& surface) -> Body {
+    if (gauss_points) throw InputError("--components gauss-points is for solids; the components of a surface are flaps");
     if (problem.law != "stvk")
       throw InputError("--material " + problem.law + " is for solids; a surface is a discrete shell");
     if (problem.materials)
@@ -152,17 +173,18 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
     if (!problem.parameters.empty())
       throw InputError("--parameter is for the laws of solids; a surface is a discrete shell");
     const Material base = base_material(problem);
-    Shell shell = isotropic_shell(*surface, base.moduli, shell_thickness(problem, *surface), held, base.density);
+    Shell shell = isotropic_shell(surface, base.moduli, shell_thickness(problem, surface), held, base.density);
     shell.damping = damping;
     return shell;
-  }
-  if (problem.thickness) throw InputError("--thickness is for surfaces; the mesh has tets");
-  Solid solid;
-  solid.mesh = std::get<TetMesh>(named.mesh);
-  solid.fixed_nodes = held;
-  solid.damping = damping;
-  set_materials(problem, solid);
-  return solid;
+  };
+  return std::visit(
+      [&]<typename Mesh>(const Mesh& mesh) -> Body {
+        if constexpr (std::same_as<Mesh, TriangleMesh>)
+          return shell_body(mesh);
+        else
+          return solid_body(mesh);
+      },
+      named.mesh);
 }
 
 ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named, const Body& body) {
@@ -185,7 +207,7 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
   return options;
 }
 
-Json problem_json(const ProblemOptions& problem, const ReduceOptions& options) {
+Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, const Body& body) {
   Json json{{"recipe", problem.recipe},
             {"subspace", options.subspace},
             {"modes", options.modes},
@@ -197,7 +219,8 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options) {
             {"inverted", to_text(*options.poses.inverted)},
             {"held_out", options.held_out_poses},
             {"seed", options.seed},
-            {"material", problem.law},
+            {"material", law(body)},
+            {"components", problem.components},
             {"young", problem.young},
             {"poisson", problem.poisson},
             {"density", problem.density},

@@ -16,6 +16,7 @@ namespace supple {
 /// Options as typed. What is not given follows from the recipe.
 struct ProblemOptions {
   std::string mesh;  ///< file or built-in
+  std::string components = "cells";  ///< what may be selected: cells or gauss-points
 
   std::string law = "stvk", young = "1e5", poisson = "0.4", density = "1000";
   std::optional<std::string> thickness;            ///< of a surface: a length, or a share of the diagonal
@@ -41,6 +42,6 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named);
 /// \param named  the object's mesh, which a file of poses must fit.
 ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named, const Body& body);
 /// What poses the problem, and nothing that differs between two runs of the same job.
-Json problem_json(const ProblemOptions& problem, const ReduceOptions& options);
+Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, const Body& body);
 
 }  // namespace supple

@@ -30,8 +30,8 @@ ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const
 }
 
 /// What made the model, and nothing that differs between two runs of the same job.
-Json options_json(const ReduceCommand& command, const ReduceOptions& options) {
-  Json json = problem_json(command, options);
+Json options_json(const ReduceCommand& command, const ReduceOptions& options, const Body& body) {
+  Json json = problem_json(command, options, body);
   json["points"] = options.points;
   json["target_error"] = options.target_error;
   json["selector"] = options.selector;
@@ -46,12 +46,12 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   json["mesh"] = {{"source", command.mesh},
                   {"format", named.notes.format},
                   {"nodes", report.nodes},
-                  {component_name(model.body), report.components},
+                  {json_key(component_name(model.body)), report.components},
                   {"fixed_nodes", report.fixed_nodes},
                   {"mass", nodal_mass(model.body).sum()},
                   {"diagonal", bounding_box(node_positions(model.body)).diagonal()},
                   {"warnings", named.notes.warnings}};
-  if (std::holds_alternative<Shell>(model.body)) json["mesh"]["triangles"] = named.num_elements();
+  json["mesh"][json_key(cell_name(model.body))] = num_cells(model.body);
   json["dimension"] = report.dimension;
   json["points"] = report.points;
   json["training_error"] = report.training_error;
@@ -78,7 +78,7 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
                        {"columns_evaluated", selection.columns_evaluated},
                        {"history", json_history(selection)}};
   json["notes"] = report.notes;
-  json["options"] = options_json(command, options);
+  json["options"] = options_json(command, options, model.body);
   json["seed"] = options.seed;
   json["threads"] = num_threads();
   json["model"] = command.model.string();
@@ -189,7 +189,7 @@ void ReduceCommand::run() const {
   result.provenance = {{"version", SUPPLE_VERSION},
                        {"mesh", mesh},
                        {"seed", std::to_string(options.seed)},
-                       {"options", options_json(*this, options).dump()},
+                       {"options", options_json(*this, options, body).dump()},
                        {"training_error", exact(report.training_error)},
                        {"held_out_error", exact(report.held_out_error)}};
   for (const std::string& note : report.notes) warn(note);

@@ -19,7 +19,7 @@ struct SimulateCommand {
   std::optional<double> tolerance;
   std::optional<Index> every;
   std::vector<Index> track;
-  std::string frames = "surface";  ///< surface, tets or none
+  std::string frames = "surface";  ///< surface, cells (or tets) or none
   std::filesystem::path output;    ///< folder; empty: only the report
   std::filesystem::path json;
   int threads = 0;

@@ -9,7 +9,7 @@ namespace {
 
 std::vector<Triangle> visible_triangles(const Body& body) {
   if (const Shell* shell = std::get_if<Shell>(&body)) return shell->mesh.triangles;
-  return boundary_faces(std::get<Solid>(body).mesh);
+  return visit_solid(body, [](const auto& solid) { return boundary_faces(solid.mesh); });
 }
 
 /// The end of a scale that holds all scalars of the objects: their largest, rounded up to two digits.

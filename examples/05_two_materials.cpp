@@ -36,7 +36,7 @@ int main() {
   for (const Tet& tet : mesh.tets) {  // stiff below, soft above
     double y = 0;
     for (const Index v : tet) y += mesh.nodes(v, 1) / 4;
-    solid.material_of_tet.push_back(y > bounding_box(mesh.nodes).extent().y() / 2 ? 1 : 0);
+    solid.material_of_cell.push_back(y > bounding_box(mesh.nodes).extent().y() / 2 ? 1 : 0);
   }
 
   const FullSystem full(make_model<StVenantKirchhoff>(solid), solid.nodal_mass(), solid.fixed_nodes);
@@ -50,7 +50,7 @@ int main() {
   Vector young = Vector::Zero(mesh.num_nodes());
   for (Index e = 0; e < mesh.num_tets(); ++e)
     for (const Index v : mesh.tets[e])
-      young[v] = std::max(young[v], solid.material_of_tet[e] == 0 ? 8e4 : 1e4);
+      young[v] = std::max(young[v], solid.material_of_cell[e] == 0 ? 8e4 : 1e4);
   const std::vector<Triangle> surface = boundary_faces(mesh);
   std::vector<PictureObject> objects;
   for (const auto& [caption, displacement] :

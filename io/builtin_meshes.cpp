@@ -124,17 +124,38 @@ const Builtin* find_builtin(std::string_view name) {
   return nullptr;
 }
 
+constexpr std::string_view hexahedral = "hexbox", quadratic = "tet10";
+
+HexMesh hexbox(const BuiltinSpec& spec) {
+  const std::vector<Index> cells =
+      spec.numbers(3, 'x', "hexbox:NXxNYxNZ with numbers of cells ≥ 1, such as hexbox:40x10x10");
+  spec.expect_size(product(cells));
+  const auto longest = static_cast<double>(*std::max_element(cells.begin(), cells.end()));
+  return hex_box(cells[0], cells[1], cells[2],
+                 Point(static_cast<double>(cells[0]), static_cast<double>(cells[1]), static_cast<double>(cells[2])) / longest);
+}
+
 }  // namespace
 
 bool is_builtin(std::string_view text) {
-  return find_builtin(BuiltinSpec(text).name) != nullptr;
+  const std::string_view name = BuiltinSpec(text).name;
+  return find_builtin(name) || name == hexahedral || name == quadratic;
 }
 
 TetMesh builtin_mesh(std::string_view text) {
   const BuiltinSpec spec(text);
   const Builtin* builtin = find_builtin(spec.name);
-  if (!builtin) spec.fail("is no built-in mesh; expected one of\n" + std::string(builtin_mesh_help));
+  if (!builtin) spec.fail("is no built-in mesh of tets; expected one of\n" + std::string(builtin_mesh_help));
   return builtin->make(spec);
+}
+
+SolidMesh builtin_solid_mesh(std::string_view text) {
+  const BuiltinSpec spec(text);
+  if (spec.name == hexahedral) return hexbox(spec);
+  if (spec.name != quadratic) return builtin_mesh(text);
+  if (!find_builtin(BuiltinSpec(spec.parameters).name))
+    spec.fail("expected tet10: and a built-in mesh of tets, such as tet10:bar:20x5x5");
+  return quadratic_mesh(builtin_mesh(spec.parameters));
 }
 
 }  // namespace supple

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Meshes by name, for demonstrations, tests and benchmarks: no file needed.
 
-#include <physics/tet_mesh.hpp>
+#include <io/mesh_reader.hpp>
 
 #include <string_view>
 
@@ -13,9 +13,11 @@ inline constexpr std::string_view builtin_mesh_help =
     "cube:N                  the unit cube of N x N x N cells\n"
     "menger:BASE,LEVEL,SUB   a Menger sponge of BASE^LEVEL cells a side (classic: 3), each cut in SUB^3\n"
     "ball:N                  a ball of diameter 1 m, N cells of 12 tets across\n"
-    "octopus[:N]             an octopus 1 m wide, N cells a metre (44: 95 000 tets); fix it by y<4%\n";
+    "octopus[:N]             an octopus 1 m wide, N cells a metre (44: 95 000 tets); fix it by y<4%\n"
+    "hexbox:NXxNYxNZ         the bar, of hexahedra\n"
+    "tet10:...               any of the others with tets of second order, a node amid each edge, as tet10:bar:8x2x2\n";
 
-/// Whether a text means a built-in mesh: it does if what stands before the first ':' is one of their names.
+/// Whether a text means a built-in mesh of a solid: it does if what stands before the first ':' is one of their names.
 bool is_builtin(std::string_view spec);
 
 /// Makes the mesh that a text such as "bar:80x20x10" or "octopus" describes; y is up.
@@ -26,5 +28,8 @@ bool is_builtin(std::string_view spec);
 ///   cells.
 /// \note 0.2 s for the octopus.
 TetMesh builtin_mesh(std::string_view spec);
+
+/// The same for every built-in solid: "hexbox:40x10x10" is a bar of hexahedra, "tet10:ball:8" a ball of quadratic tets.
+SolidMesh builtin_solid_mesh(std::string_view spec);
 
 }  // namespace supple

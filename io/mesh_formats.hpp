@@ -1,8 +1,8 @@
 #pragma once
-/// \file The formats behind read_tet_mesh: each turns a text into a FileMesh.
+/// \file The formats behind read_solid_mesh: each turns a text into a FileMesh.
 
 #include <io/cursor.hpp>
-#include <physics/tet_mesh.hpp>
+#include <physics/cell_mesh.hpp>
 
 #include <span>
 #include <unordered_map>
@@ -13,16 +13,28 @@ namespace supple {
 struct FileMesh {
   std::string format;
   std::vector<Point> nodes;
-  std::vector<Tet> tets;
-  std::vector<int> region;  ///< one a tet, or empty
+  std::vector<Tet> tets;                         ///< the corners of tets of any order
+  std::vector<std::array<Index, 6>> mid_edges;  ///< of the tets of second order, in turn; nodes as QuadraticTet has them
+  std::vector<std::array<Index, 8>> hexahedra;  ///< nodes as TrilinearHex has them
+  std::vector<int> region;                      ///< one a tet or hexahedron, in order of the file, or empty
   std::map<int, std::string> region_names;
   MeshNumbers numbers;
   std::vector<std::string> warnings;
 
-  Index num_corner_only = 0;                 ///< tets of higher order, of which only the corners were taken
+  Index num_higher = 0;                      ///< tets of order three or more, of which only the corners were taken
   Index num_lower = 0;                       ///< cells of lower dimension, left out
-  std::map<std::string, Index> other_solid;  ///< hexahedra and the like, which are refused, by kind
+  std::map<std::string, Index> other_solid;  ///< prisms and the like, which are refused, by kind
+
+  /// Tets and hexahedra.
+  Index num_cells() const { return static_cast<Index>(tets.size() + hexahedra.size()); }
+  /// \param cell  its corners, or its ten nodes as QuadraticTet has them.
+  void add_tet(std::span<const Index> cell);
+  void add_hexahedron(std::span<const Index> cell);
 };
+
+/// Puts the mid-edge nodes in the order of QuadraticTet where a format leaves theirs open: for all tets the one that brings
+/// each next to the middle of its edge. \throws InputError if there is none.
+void order_mid_edges(FileMesh& mesh, const Cursor& in);
 
 void read_gmsh(Cursor& in, FileMesh& mesh);
 void read_medit(Cursor& in, FileMesh& mesh);

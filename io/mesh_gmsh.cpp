@@ -36,10 +36,10 @@ ElementType element_type(std::int64_t type) {
                                                           {30, {35, 3, "tets"}},
                                                           {31, {56, 3, "tets"}},
                                                           {5, {8, 3, "hexahedra"}},
-                                                          {12, {27, 3, "hexahedra"}},
-                                                          {17, {20, 3, "hexahedra"}},
-                                                          {92, {64, 3, "hexahedra"}},
-                                                          {93, {125, 3, "hexahedra"}},
+                                                          {12, {27, 3, "hexahedra of higher order"}},
+                                                          {17, {20, 3, "hexahedra of higher order"}},
+                                                          {92, {64, 3, "hexahedra of higher order"}},
+                                                          {93, {125, 3, "hexahedra of higher order"}},
                                                           {6, {6, 3, "prisms"}},
                                                           {13, {18, 3, "prisms"}},
                                                           {18, {15, 3, "prisms"}},
@@ -273,17 +273,25 @@ class GmshReader {
   void read_element(const ElementType& type, std::int64_t number, std::int64_t physical, std::int64_t entity,
                     const ReadNumber& read_number) {
     const bool is_tet = type.dim == 3 && type.plural == std::string_view("tets");
-    Tet tet{};
+    const bool is_hexahedron = type.dim == 3 && type.plural == std::string_view("hexahedra") && type.num_nodes == 8;
+    std::array<Index, 10> nodes{};
     for (int a = 0; a < type.num_nodes; ++a) {
       const std::int64_t node = read_number();
-      if (is_tet && a < 4) tet[a] = table_->find(node, in_);
+      if ((is_tet && (a < 4 || type.num_nodes == 10)) || is_hexahedron) nodes[a] = table_->find(node, in_);
     }
-    if (is_tet) {
-      mesh_.tets.push_back(tet);
-      mesh_.numbers.tet.push_back(number);
+    if (is_tet || is_hexahedron) {
+      if (is_hexahedron) {
+        mesh_.add_hexahedron(std::span(nodes).first(8));
+      } else if (type.num_nodes == 10) {
+        std::swap(nodes[8], nodes[9]);  // edge 23 before 13
+        mesh_.add_tet(nodes);
+      } else {
+        mesh_.add_tet(std::span(nodes).first(4));
+        mesh_.num_higher += type.num_nodes > 4;
+      }
+      mesh_.numbers.cell.push_back(number);
       physical_.push_back(static_cast<int>(physical));
       entity_.push_back(static_cast<int>(entity));
-      mesh_.num_corner_only += type.num_nodes > 4;
     } else if (type.dim == 3) {
       ++mesh_.other_solid[type.plural];
     } else {
@@ -309,7 +317,7 @@ class GmshReader {
   std::endian order_ = std::endian::native;
   std::optional<NumberTable> table_;
   std::map<std::int64_t, int> physical_of_entity_;
-  std::vector<int> physical_, entity_;  // of each tet
+  std::vector<int> physical_, entity_;  // of each tet or hexahedron
 };
 
 }  // namespace

@@ -11,19 +11,18 @@ void read_medit(Cursor& in, FileMesh& mesh) {
   in.expect("MeshVersionFormatted");
   in.integer("a version");
   Index num_vertices = -1;
-  const auto read_tets = [&](std::string_view what, int num_nodes) {
+  const auto read_cells = [&](std::string_view what, int num_nodes) {
     const Index count = in.count(what, 2 * num_nodes + 1);
     if (num_vertices < 0) in.fail("expected Vertices before " + std::string(what));
     for (Index k = 0; k < count; ++k) {
-      Tet tet;
-      for (int a = 0; a < num_nodes; ++a) {
-        const Index node = node_at(in, in.integer("a node number"), 1, num_vertices);
-        if (a < 4) tet[a] = node;
-      }
-      mesh.tets.push_back(tet);
+      std::array<Index, 10> nodes;
+      for (int a = 0; a < num_nodes; ++a) nodes[a] = node_at(in, in.integer("a node number"), 1, num_vertices);
+      if (num_nodes == 8)
+        mesh.add_hexahedron(std::span(nodes).first(8));
+      else
+        mesh.add_tet(std::span(nodes).first(num_nodes));
       mesh.region.push_back(static_cast<int>(in.integer("a reference")));
-      mesh.numbers.tet.push_back(static_cast<std::int64_t>(mesh.tets.size()));
-      mesh.num_corner_only += num_nodes > 4;
+      mesh.numbers.cell.push_back(static_cast<std::int64_t>(num_nodes == 8 ? mesh.hexahedra.size() : mesh.tets.size()));
     }
   };
   for (std::string_view keyword = in.word(); !keyword.empty() && keyword != "End"; keyword = in.word()) {
@@ -39,9 +38,11 @@ void read_medit(Cursor& in, FileMesh& mesh) {
         in.real("a reference");
       }
     } else if (keyword == "Tetrahedra") {
-      read_tets("tetrahedra", 4);
+      read_cells("tetrahedra", 4);
     } else if (keyword == "TetrahedraP2") {
-      read_tets("tetrahedra", 10);
+      read_cells("tetrahedra", 10);
+    } else if (keyword == "Hexahedra") {
+      read_cells("hexahedra", 8);
     } else if (std::isalpha(static_cast<unsigned char>(keyword[0]))) {
       // A section that a solid does not need: numbers up to the next keyword.
       const bool is_solid =
@@ -61,6 +62,7 @@ void read_medit(Cursor& in, FileMesh& mesh) {
     }
   }
   if (num_vertices < 0) in.fail("expected a section Vertices");
+  order_mid_edges(mesh, in);
   mesh.numbers.node.resize(num_vertices);
   std::iota(mesh.numbers.node.begin(), mesh.numbers.node.end(), std::int64_t{1});
 }

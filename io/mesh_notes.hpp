@@ -12,7 +12,7 @@ namespace supple {
 struct MeshNotes {
   std::string format;                 ///< "Gmsh 4.1, binary"
   std::vector<std::string> warnings;  ///< what was repaired or left out, what may surprise in a simulation
-  MeshNumbers numbers;                ///< the file's own number of each node and each tet or triangle
+  MeshNumbers numbers;                ///< the file's own number of each node and each cell or triangle
 };
 
 }  // namespace supple

@@ -2,6 +2,7 @@
 #include <io/mesh_reader.hpp>
 #include <io/mesh_repairs.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <numeric>
@@ -77,46 +78,46 @@ FileMesh read_any(const std::filesystem::path& path) {
   return mesh;
 }
 
-void refuse_other_solids(const FileMesh& file, const std::string& name) {
+enum class Kinds { Tets, All };
+
+void refuse_other_solids(const FileMesh& file, Kinds wanted, const std::string& name) {
+  const auto num_tets = static_cast<Index>(file.tets.size()), num_hexahedra = static_cast<Index>(file.hexahedra.size());
   std::string kinds;
-  for (const auto& [kind, count] : file.other_solid)
-    kinds += (kinds.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
-  const auto num_tets = static_cast<Index>(file.tets.size());
-  if (!kinds.empty())
+  const auto add = [&](const std::string& kind) { kinds += (kinds.empty() ? "" : ", ") + kind; };
+  for (const auto& [kind, count] : file.other_solid) add(std::to_string(count) + " " + kind);
+  const bool mixed = num_tets > 0 && num_hexahedra > 0;
+  if (!kinds.empty() || mixed || (num_hexahedra > 0 && wanted == Kinds::Tets)) {
+    if (num_hexahedra > 0) add(plural(num_hexahedra, "hexahedron", "hexahedra"));
+    if (num_tets > 0) kinds += " and " + plural(num_tets, "tet", "tets");
     throw InputError(name + ": holds " + kinds +
-                     (num_tets > 0 ? " and " + plural(num_tets, "tet", "tets") : "") +
-                     "; only tetrahedra can be used: split the others first");
-  if (num_tets == 0)
-    throw InputError(name + ": holds no tetrahedra" +
+                     (wanted == Kinds::Tets ? "; only tetrahedra can be used: split the others first"
+                                            : "; expected tetrahedra alone or hexahedra of eight nodes alone"));
+  }
+  if (num_tets + num_hexahedra == 0)
+    throw InputError(name + ": holds no tetrahedra" + (wanted == Kinds::All ? " or hexahedra" : "") +
                      (file.num_lower > 0
                           ? " but " + plural(file.num_lower, "cell", "cells") +
                                 " of lower dimension; a surface must be filled with tetrahedra first"
                           : std::string()));
 }
 
-void take_nodes(FileMesh& file, TetMesh& mesh) {
-  if (file.numbers.node.empty()) {
-    file.numbers.node.resize(file.nodes.size());
-    std::iota(file.numbers.node.begin(), file.numbers.node.end(), std::int64_t{0});
-  }
-  mesh.nodes = keep_nodes_in_use(file.nodes, file.tets, file.numbers.node);
-  mesh.tets = std::move(file.tets);
-  if (const Index dropped = static_cast<Index>(file.nodes.size()) - mesh.num_nodes(); dropped > 0)
-    file.warnings.push_back(plural(dropped, "node belongs", "nodes belong") + " to no tet: dropped");
+template <std::size_t size>
+constexpr const char* cell_word = size == 8 ? "hexahedron" : "tet";
+template <std::size_t size>
+constexpr const char* cell_words = size == 8 ? "hexahedra" : "tets";
+
+double least_shape(const TetMesh& mesh, Index e) {
+  return radius_ratio(mesh, e);
+}
+double least_shape(const QuadraticTetMesh& mesh, Index e) {
+  return radius_ratio(mesh, e);
+}
+double least_shape(const HexMesh& mesh, Index e) {
+  return scaled_jacobian(mesh, e);
 }
 
-void reorder_reversed(TetMesh& mesh, std::vector<std::string>& warnings) {
-  Index reversed = 0;
-  for (Index e = 0; e < mesh.num_tets(); ++e)
-    if (tet_orientation(mesh, e) < 0) {
-      std::swap(mesh.tets[e][2], mesh.tets[e][3]);
-      ++reversed;
-    }
-  if (reversed > 0)
-    warnings.push_back(plural(reversed, "tet is", "tets are") + " reversed: two nodes swapped in each");
-}
-
-void warn_of_surprises(const TetMesh& mesh, const MeshNumbers& numbers, std::vector<std::string>& warnings) {
+template <typename Mesh>
+void warn_of_surprises(const Mesh& mesh, const MeshNumbers& numbers, std::vector<std::string>& warnings) {
   if (const Index count = num_coincident_nodes(mesh.nodes); count > 0)
     warnings.push_back(plural(count, "node lies", "nodes lie") + " where another node is: not merged");
   if (const Index count = connected_components(mesh).count; count > 1)
@@ -127,32 +128,53 @@ void warn_of_surprises(const TetMesh& mesh, const MeshNumbers& numbers, std::vec
                        plural(hinges.nodes, "node", "nodes") + " only, about which they turn freely");
   double worst = 1;
   Index at = 0;
-  for (Index e = 0; e < mesh.num_tets(); ++e)
-    if (const double ratio = radius_ratio(mesh, e); ratio < worst) worst = ratio, at = e;
+  for (Index e = 0; e < num_cells(mesh); ++e)
+    if (const double shape = least_shape(mesh, e); shape < worst) worst = shape, at = e;
   if (worst < 1e-3) {
+    constexpr bool is_hex = std::same_as<Mesh, HexMesh>;
     std::array<char, 32> shown;
     std::snprintf(shown.data(), shown.size(), "%.2g", worst);
-    warnings.push_back("nearly flat tets: the worst, tet " + std::to_string(numbers.tet[at]) +
-                       ", has radius ratio " + shown.data());
+    warnings.push_back(std::string(is_hex ? "nearly flat hexahedra: the worst, hex " : "nearly flat tets: the worst, tet ") +
+                       std::to_string(numbers.cell[at]) + (is_hex ? ", has scaled Jacobian " : ", has radius ratio ") +
+                       shown.data());
   }
 }
 
-}  // namespace
+bool is_reversed(const TetMesh& mesh, Index e) {
+  return tet_orientation(mesh, e) < 0;
+}
+template <typename Mesh>
+bool is_reversed(const Mesh& mesh, Index e) {
+  return cell_volume(mesh, e) < 0;
+}
 
-TetMesh read_tet_mesh(const std::filesystem::path& path, MeshNotes* notes) {
-  FileMesh file = read_any(path);
-  const std::string name = path.string();
-  refuse_other_solids(file, name);
-  if (file.num_corner_only > 0)
-    file.warnings.push_back(plural(file.num_corner_only, "tet is", "tets are") +
-                            " of higher order: only the corners are used");
-  TetMesh mesh;
-  take_nodes(file, mesh);
+/// What all kinds of cells have in common: the nodes in use, regions, orientation, checks, warnings.
+template <typename Mesh, std::size_t size>
+Mesh finish(FileMesh& file, std::vector<std::array<Index, size>> cells, const std::string& name, MeshNotes* notes) {
+  Mesh mesh;
+  if (file.numbers.node.empty()) {
+    file.numbers.node.resize(file.nodes.size());
+    std::iota(file.numbers.node.begin(), file.numbers.node.end(), std::int64_t{0});
+  }
+  mesh.nodes = keep_nodes_in_use(file.nodes, cells, file.numbers.node);
+  if (const Index dropped = static_cast<Index>(file.nodes.size()) - mesh.num_nodes(); dropped > 0)
+    file.warnings.push_back(plural(dropped, "node belongs", "nodes belong") + " to no " + cell_word<size> + ": dropped");
+  std::vector<std::array<Index, size>>& own = cells_of(mesh);
+  own = std::move(cells);
   if (std::any_of(file.region.begin(), file.region.end(), [](int tag) { return tag != 0; })) {
     mesh.region = std::move(file.region);
     mesh.region_names = std::move(file.region_names);
   }
-  reorder_reversed(mesh, file.warnings);
+  Index num_reversed = 0;
+  for (Index e = 0; e < num_cells(mesh); ++e)
+    if (is_reversed(mesh, e)) {
+      own[e] = reversed(own[e]);
+      ++num_reversed;
+    }
+  if (num_reversed > 0)
+    file.warnings.push_back(num_reversed == 1 ? std::string("1 ") + cell_word<size> + " is reversed: its nodes were reordered"
+                                              : std::to_string(num_reversed) + " " + cell_words<size> +
+                                                    " are reversed: their nodes were reordered");
   try {
     check_mesh(mesh, file.numbers);
   } catch (const std::invalid_argument& error) {
@@ -163,6 +185,34 @@ TetMesh read_tet_mesh(const std::filesystem::path& path, MeshNotes* notes) {
     *notes = {std::move(file.format), std::move(file.warnings), std::move(file.numbers)};
   }
   return mesh;
+}
+
+TetMesh finish_tets(FileMesh& file, const std::string& name, MeshNotes* notes) {
+  if (const Index count = file.num_higher + static_cast<Index>(file.mid_edges.size()); count > 0)
+    file.warnings.push_back(plural(count, "tet is", "tets are") + " of higher order: only the corners are used");
+  return finish<TetMesh>(file, std::move(file.tets), name, notes);
+}
+
+}  // namespace
+
+SolidMesh read_solid_mesh(const std::filesystem::path& path, MeshNotes* notes) {
+  FileMesh file = read_any(path);
+  const std::string name = path.string();
+  refuse_other_solids(file, Kinds::All, name);
+  if (!file.hexahedra.empty()) return finish<HexMesh>(file, std::move(file.hexahedra), name, notes);
+  if (file.mid_edges.size() != file.tets.size()) return finish_tets(file, name, notes);
+  std::vector<std::array<Index, 10>> cells(file.tets.size());
+  for (std::size_t e = 0; e < cells.size(); ++e) {
+    std::ranges::copy(file.tets[e], cells[e].begin());
+    std::ranges::copy(file.mid_edges[e], cells[e].begin() + 4);
+  }
+  return finish<QuadraticTetMesh>(file, std::move(cells), name, notes);
+}
+
+TetMesh read_tet_mesh(const std::filesystem::path& path, MeshNotes* notes) {
+  FileMesh file = read_any(path);
+  refuse_other_solids(file, Kinds::Tets, path.string());
+  return finish_tets(file, path.string(), notes);
 }
 
 }  // namespace supple

@@ -54,19 +54,17 @@ void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh) {
   mesh.tets.reserve(num_tets);
   for (Index e = 0; e < num_tets; ++e) {
     next_line(ele_file, "tet " + std::to_string(first + e));
-    mesh.numbers.tet.push_back(ele_file.integer("a tet number"));
-    Tet tet;
-    for (int a = 0; a < nodes_per_tet; ++a) {
-      const Index node = node_at(ele_file, ele_file.integer_in_line("a node number"), first, num_nodes);
-      if (a < 4) tet[a] = node;
-    }
-    mesh.tets.push_back(tet);
+    mesh.numbers.cell.push_back(ele_file.integer("a tet number"));
+    std::array<Index, 10> nodes;
+    for (int a = 0; a < nodes_per_tet; ++a)
+      nodes[a] = node_at(ele_file, ele_file.integer_in_line("a node number"), first, num_nodes);
+    mesh.add_tet(std::span(nodes).first(nodes_per_tet));
     double region = 0;
     for (std::int64_t k = 0; k < num_attributes; ++k) region = ele_file.real_in_line("an attribute");
     if (num_attributes > 0) mesh.region.push_back(to_region(region));
-    mesh.num_corner_only += nodes_per_tet > 4;
     ele_file.rest_of_line();
   }
+  order_mid_edges(mesh, ele_file);
 }
 
 }  // namespace supple

@@ -10,7 +10,7 @@ namespace supple {
 void read_vega(Cursor& in, FileMesh& mesh) {
   mesh.format = "VegaFEM";
   Index num_nodes = -1;
-  std::int64_t first_node = 1, first_tet = 1;
+  std::int64_t first_node = 1, first_cell = 1;
   std::map<std::string, std::vector<std::int64_t>> sets;
   std::set<std::string> materials;
   struct Region {
@@ -40,20 +40,26 @@ void read_vega(Cursor& in, FileMesh& mesh) {
       const Index count = in.count("elements", 9);
       const std::int64_t nodes_per_element = in.integer("the nodes of an element");
       in.rest_of_line();
-      if (type != "TET" && type != "TETS") {
+      const bool is_hexahedron = type == "CUBIC";
+      if (type != "TET" && type != "TETS" && !is_hexahedron) {
         skip_rows = true;
-        mesh.other_solid[type == "CUBIC" ? "hexahedra (CUBIC)" : "elements of kind " + type.substr(0, 20)] +=
-            count;
+        mesh.other_solid["elements of kind " + type.substr(0, 20)] += count;
         continue;
       }
-      if (nodes_per_element != 4)
-        in.fail("expected 4 nodes a tet, found " + std::to_string(nodes_per_element));
+      const int size = is_hexahedron ? 8 : 4;
+      if (nodes_per_element != size)
+        in.fail("expected " + std::to_string(size) + " nodes a " + (is_hexahedron ? "cube" : "tet") + ", found " +
+                std::to_string(nodes_per_element));
       for (Index e = 0; e < count; ++e) {
         const std::int64_t number = in.integer("an element number");
-        if (mesh.tets.empty()) first_tet = number;
-        mesh.numbers.tet.push_back(number);
-        Tet& tet = mesh.tets.emplace_back();
-        for (Index& node : tet) node = node_at(in, in.integer("a vertex number"), first_node, num_nodes);
+        if (mesh.num_cells() == 0) first_cell = number;
+        mesh.numbers.cell.push_back(number);
+        std::array<Index, 8> nodes{};
+        for (int a = 0; a < size; ++a) nodes[a] = node_at(in, in.integer("a vertex number"), first_node, num_nodes);
+        if (is_hexahedron)
+          mesh.add_hexahedron(nodes);
+        else
+          mesh.add_tet(std::span(nodes).first(4));
       }
     } else if (keyword == "*MATERIAL") {
       materials.emplace(in.word());
@@ -78,19 +84,19 @@ void read_vega(Cursor& in, FileMesh& mesh) {
   mesh.numbers.node.resize(num_nodes);
   std::iota(mesh.numbers.node.begin(), mesh.numbers.node.end(), first_node);
 
-  const auto num_tets = static_cast<Index>(mesh.tets.size());
-  if (!regions.empty()) mesh.region.assign(num_tets, 0);
+  const Index num_cells = mesh.num_cells();
+  if (!regions.empty()) mesh.region.assign(num_cells, 0);
   for (std::size_t r = 0; r < regions.size(); ++r) {
     const int tag = static_cast<int>(r) + 1;
     mesh.region_names[tag] = regions[r].set;
     if (regions[r].set == "allElements") {
-      mesh.region.assign(num_tets, tag);
+      mesh.region.assign(num_cells, tag);
     } else if (const auto set = sets.find(regions[r].set); set != sets.end()) {
       for (const std::int64_t number : set->second) {
-        if (number < first_tet || number - first_tet >= num_tets)
+        if (number < first_cell || number - first_cell >= num_cells)
           in.fail("set " + set->first + " names element " + std::to_string(number) +
                   ", which does not exist");
-        mesh.region[number - first_tet] = tag;
+        mesh.region[number - first_cell] = tag;
       }
     } else {
       in.set_position(regions[r].position);

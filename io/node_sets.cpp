@@ -40,6 +40,39 @@ std::vector<Index> nodes_where(Index num_nodes, std::string_view rule, const Is&
   return selected;
 }
 
+template <typename Mesh>
+std::vector<Index> region_nodes(const Mesh& mesh, std::string_view region) {
+  std::optional<int> tag;
+  for (const auto& [number, name] : mesh.region_names)
+    if (name == region) tag = number;
+  if (!tag) {
+    int number = 0;
+    const auto [rest, error] = std::from_chars(region.data(), region.data() + region.size(), number);
+    if (error == std::errc() && rest == region.data() + region.size()) tag = number;
+  }
+  std::vector<char> is_member(mesh.num_nodes(), false);
+  bool exists = false;
+  for (std::size_t e = 0; e < mesh.region.size(); ++e)
+    if (tag && mesh.region[e] == *tag) {
+      exists = true;
+      for (const Index v : cells_of(mesh)[e]) is_member[v] = true;
+    }
+  if (!exists) {
+    std::string known;
+    for (const int number : std::set<int>(mesh.region.begin(), mesh.region.end())) {
+      if (known.size() > 200) {
+        known += ", …";
+        break;
+      }
+      const auto name = mesh.region_names.find(number);
+      known += (known.empty() ? "" : ", ") + std::to_string(number);
+      if (name != mesh.region_names.end()) known += " (" + name->second + ")";
+    }
+    fail(region, known.empty() ? "the mesh has no regions" : "no such region; the mesh has " + known);
+  }
+  return nodes_where(mesh.num_nodes(), region, [&](Index v) { return is_member[v]; });
+}
+
 }  // namespace
 
 std::vector<Index> select_nodes(const Points& nodes, std::string_view rule) {
@@ -93,35 +126,13 @@ std::vector<Index> nodes_in_box(const Points& nodes, std::string_view box) {
 }
 
 std::vector<Index> nodes_of_region(const TetMesh& mesh, std::string_view region) {
-  std::optional<int> tag;
-  for (const auto& [number, name] : mesh.region_names)
-    if (name == region) tag = number;
-  if (!tag) {
-    int number = 0;
-    const auto [rest, error] = std::from_chars(region.data(), region.data() + region.size(), number);
-    if (error == std::errc() && rest == region.data() + region.size()) tag = number;
-  }
-  std::vector<char> is_member(mesh.num_nodes(), false);
-  bool exists = false;
-  for (std::size_t e = 0; e < mesh.region.size(); ++e)
-    if (tag && mesh.region[e] == *tag) {
-      exists = true;
-      for (const Index v : mesh.tets[e]) is_member[v] = true;
-    }
-  if (!exists) {
-    std::string known;
-    for (const int number : std::set<int>(mesh.region.begin(), mesh.region.end())) {
-      if (known.size() > 200) {
-        known += ", …";
-        break;
-      }
-      const auto name = mesh.region_names.find(number);
-      known += (known.empty() ? "" : ", ") + std::to_string(number);
-      if (name != mesh.region_names.end()) known += " (" + name->second + ")";
-    }
-    fail(region, known.empty() ? "the mesh has no regions" : "no such region; the mesh has " + known);
-  }
-  return nodes_where(mesh.num_nodes(), region, [&](Index v) { return is_member[v]; });
+  return region_nodes(mesh, region);
+}
+std::vector<Index> nodes_of_region(const HexMesh& mesh, std::string_view region) {
+  return region_nodes(mesh, region);
+}
+std::vector<Index> nodes_of_region(const QuadraticTetMesh& mesh, std::string_view region) {
+  return region_nodes(mesh, region);
 }
 
 std::vector<Index> read_node_set(const Points& nodes, const std::filesystem::path& path) {

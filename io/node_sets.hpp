@@ -1,7 +1,7 @@
 #pragma once
 /// \file Sets of nodes in words: which ones to hold, to pull, to watch.
 
-#include <physics/tet_mesh.hpp>
+#include <physics/cell_mesh.hpp>
 
 #include <filesystem>
 #include <string>
@@ -23,9 +23,11 @@ std::vector<Index> select_nodes(const Points& nodes, const std::vector<std::stri
 /// \throws InputError as above, and if a lower bound is above its upper bound.
 std::vector<Index> nodes_in_box(const Points& nodes, std::string_view box);
 
-/// Nodes of the tets of a region, given by its name or its number.
+/// Nodes of the cells of a region, given by its name or its number.
 /// \throws InputError if the mesh has no such region; it lists those it has.
 std::vector<Index> nodes_of_region(const TetMesh& mesh, std::string_view region);
+std::vector<Index> nodes_of_region(const HexMesh& mesh, std::string_view region);
+std::vector<Index> nodes_of_region(const QuadraticTetMesh& mesh, std::string_view region);
 
 /// Node indices from a text file: counted from 0, one a line; '#' begins a comment.
 /// \return ascending, each once.

@@ -14,7 +14,10 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are written as they are in memory");
 
-constexpr std::uint8_t vtk_triangle = 5, vtk_tetra = 10;
+/// \see vtkCellType.h
+constexpr std::uint8_t vtk_type(std::size_t num_nodes) {
+  return num_nodes == 3 ? 5 : num_nodes == 4 ? 10 : num_nodes == 8 ? 12 : 24;
+}
 
 std::string escaped(std::string_view text) {
   std::string result;
@@ -82,7 +85,7 @@ void write_cells(const std::filesystem::path& path, const Points& nodes,
 
   std::vector<std::int64_t> offsets(cells.size());
   for (std::size_t e = 0; e < cells.size(); ++e) offsets[e] = static_cast<std::int64_t>((e + 1) * k);
-  const std::vector<std::uint8_t> types(cells.size(), k == 4 ? vtk_tetra : vtk_triangle);
+  const std::vector<std::uint8_t> types(cells.size(), vtk_type(k));
   static_assert(sizeof(Index) == sizeof(std::int64_t));
 
   Appended arrays;
@@ -138,6 +141,14 @@ void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span
                const VtuFields& fields) {
   write_cells(path, nodes, tets, fields);
 }
+void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const std::array<Index, 8>> hexahedra,
+               const VtuFields& fields) {
+  write_cells(path, nodes, hexahedra, fields);
+}
+void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const std::array<Index, 10>> quadratic_tets,
+               const VtuFields& fields) {
+  write_cells(path, nodes, quadratic_tets, fields);
+}
 void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const Triangle> triangles,
                const VtuFields& fields) {
   write_cells(path, nodes, triangles, fields);
@@ -150,6 +161,14 @@ VtuSeries::VtuSeries(std::filesystem::path pvd) : pvd_(std::move(pvd)) {
 
 void VtuSeries::add(double time, const Points& nodes, std::span<const Tet> tets, const VtuFields& fields) {
   add_frame(time, nodes, tets, fields);
+}
+void VtuSeries::add(double time, const Points& nodes, std::span<const std::array<Index, 8>> hexahedra,
+                    const VtuFields& fields) {
+  add_frame(time, nodes, hexahedra, fields);
+}
+void VtuSeries::add(double time, const Points& nodes, std::span<const std::array<Index, 10>> quadratic_tets,
+                    const VtuFields& fields) {
+  add_frame(time, nodes, quadratic_tets, fields);
 }
 void VtuSeries::add(double time, const Points& nodes, std::span<const Triangle> triangles,
                     const VtuFields& fields) {

@@ -25,11 +25,15 @@ struct VtuFields {
   std::vector<VtuField> cell_data = {};
 };
 
-/// Writes an UnstructuredGrid of tetrahedra or triangles, arrays in raw binary after the XML; positions in m.
+/// Writes an UnstructuredGrid of tetrahedra, hexahedra, quadratic tetrahedra or triangles, arrays in raw binary after the XML; positions in m.
 /// \throws std::invalid_argument if a field has not one row a node or cell, two fields of one kind have the
 /// same name or a cell reads a node that is not there; InputError if the file cannot be written.
 /// \see VTK File Formats, "XML File Formats", Kitware.
 void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const Tet> tets,
+               const VtuFields& fields = {});
+void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const std::array<Index, 8>> hexahedra,
+               const VtuFields& fields = {});
+void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const std::array<Index, 10>> quadratic_tets,
                const VtuFields& fields = {});
 void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const Triangle> triangles,
                const VtuFields& fields = {});
@@ -45,6 +49,9 @@ class VtuSeries {
   /// Writes one more frame.
   /// \throws std::invalid_argument if time [s] is not after the last one; as write_vtu.
   void add(double time, const Points& nodes, std::span<const Tet> tets, const VtuFields& fields = {});
+  void add(double time, const Points& nodes, std::span<const std::array<Index, 8>> hexahedra, const VtuFields& fields = {});
+  void add(double time, const Points& nodes, std::span<const std::array<Index, 10>> quadratic_tets,
+           const VtuFields& fields = {});
   void add(double time, const Points& nodes, std::span<const Triangle> triangles,
            const VtuFields& fields = {});
 

@@ -10,7 +10,17 @@
 
 namespace supple {
 
-using Body = std::variant<Solid, Shell>;
+using Body = std::variant<Solid, HexSolid, QuadraticTetSolid, Shell>;
+
+/// Calls visit(solid) of a body that is no shell. \throws std::invalid_argument for a shell.
+template <typename Visitor>
+auto visit_solid(const Body& body, const Visitor& visit) {
+  if (const auto* tets = std::get_if<Solid>(&body)) return visit(*tets);
+  if (const auto* hexahedra = std::get_if<HexSolid>(&body)) return visit(*hexahedra);
+  const auto* quadratic = std::get_if<QuadraticTetSolid>(&body);
+  require(quadratic, "the object is a shell, expected a solid");
+  return visit(*quadratic);
+}
 
 inline const Points& node_positions(const Body& body) {  ///< at rest, n × 3 [m]
   return std::visit([](const auto& b) -> const Points& { return b.mesh.nodes; }, body);
@@ -34,26 +44,39 @@ inline bool has_nodes(const Body& body, const Points& nodes) {
   return own.rows() == nodes.rows() && own == nodes;
 }
 
-/// What the terms of its force model are called: "tets" or "flaps".
+/// What its cells are called: "tets", "hexahedra", "quadratic tets" or "triangles".
+inline std::string_view cell_name(const Body& body) {
+  constexpr std::string_view names[]{"tets", "hexahedra", "quadratic tets", "triangles"};
+  return names[body.index()];
+}
+inline Index num_cells(const Body& body) {
+  if (const Shell* shell = std::get_if<Shell>(&body)) return shell->mesh.num_triangles();
+  return visit_solid(body, [](const auto& solid) { return num_cells(solid.mesh); });
+}
+
+/// What the terms of its force model are called: as its cells, or "Gauss points", or "flaps".
 inline std::string_view component_name(const Body& body) {
-  return std::holds_alternative<Solid>(body) ? "tets" : "flaps";
+  if (std::holds_alternative<Shell>(body)) return "flaps";
+  const bool points = visit_solid(body, [](const auto& solid) { return solid.component == SolidComponent::GaussPoint; });
+  return points && !std::holds_alternative<Solid>(body) ? "Gauss points" : cell_name(body);
 }
 
 inline constexpr std::string_view shell_law = "discrete-shell";
 /// The law of its material: one of material_laws(), or shell_law.
 inline std::string_view law(const Body& body) {
-  const Solid* solid = std::get_if<Solid>(&body);
-  return solid ? std::string_view(solid->law) : shell_law;
+  if (std::holds_alternative<Shell>(body)) return shell_law;
+  return visit_solid(body, [](const auto& solid) { return std::string_view(solid.law); });
 }
 
-/// Calls visit(model) with a shared pointer to its force model.
+inline std::shared_ptr<const AnyModel<4>> force_model(const Shell& shell) {
+  return std::make_shared<const AnyModel<4>>(std::make_shared<const DiscreteShell>(shell.mesh, shell.materials));
+}
+
+/// Calls visit(model) with a shared pointer to its force model, an AnyModel of four, eight or ten nodes.
 /// \throws std::invalid_argument for data that make no model, such as tets without volume or an unknown law.
 template <typename Visitor>
 decltype(auto) with_force_model(const Body& body, Visitor&& visit) {
-  if (const Shell* shell = std::get_if<Shell>(&body))
-    return visit(std::make_shared<const AnyModel<4>>(std::make_shared<const DiscreteShell>(shell->mesh, shell->materials)));
-  const Solid& solid = std::get<Solid>(body);
-  return visit(material_law(solid.law).tets(solid.mesh, solid.parameters, solid.material_of_tet));
+  return std::visit([&](const auto& some) -> decltype(auto) { return visit(force_model(some)); }, body);
 }
 
 }  // namespace supple

@@ -2,7 +2,7 @@
 /// \file Material laws by name: what commands, files and plug-ins choose from.
 
 #include <physics/any_model.hpp>
-#include <physics/tet_elasticity.hpp>
+#include <physics/solid_elasticity.hpp>
 
 #include <Eigen/Eigenvalues>
 
@@ -33,6 +33,13 @@ struct MaterialLaw {
   std::function<std::shared_ptr<const AnyModel<4>>(const TetMesh& mesh, const RowMatrix& materials,
                                                    const std::vector<std::int32_t>& of_tet)>
       tets;
+  /// The same of other cells, with cells or single Gauss points as components. Empty where `tets` is an element of its own,
+  /// which knows no others.
+  template <typename Mesh>
+  using CellModel = std::function<std::shared_ptr<const AnyModel<ElementOf<Mesh>::num_nodes>>(
+      const Mesh& mesh, const RowMatrix& materials, const std::vector<std::int32_t>& of_cell, SolidComponent component)>;
+  CellModel<HexMesh> hexahedra = {};
+  CellModel<QuadraticTetMesh> quadratic_tets = {};
 
   /// Those that agree with the moduli, with some replaced by name.
   /// \throws std::invalid_argument for a name that the law does not have, for values of which rest is no stable
@@ -47,11 +54,11 @@ std::vector<std::string> material_laws();
 /// Adds a law for this process. \throws std::invalid_argument if there is one of this name.
 void add_material_law(MaterialLaw law);
 
-/// One material a tet, or one for all, of rows of parameters.
+/// One material a cell, or one for all, of rows of parameters.
 /// \throws std::invalid_argument for another number of parameters and a row that does not exist.
 template <template <typename> class Material>
-std::vector<Material<double>> materials_of_tets(Index num_tets, const RowMatrix& rows,
-                                                const std::vector<std::int32_t>& of_tet) {
+std::vector<Material<double>> materials_of_cells(Index num_cells, const RowMatrix& rows,
+                                                 const std::vector<std::int32_t>& of_cell) {
   constexpr std::size_t num_parameters = num_material_parameters<Material>;
   require_size("parameters of the material", rows.cols(), static_cast<Index>(num_parameters));
   std::vector<Material<double>> materials;
@@ -60,14 +67,14 @@ std::vector<Material<double>> materials_of_tets(Index num_tets, const RowMatrix&
     for (std::size_t j = 0; j < num_parameters; ++j) values[j] = rows(k, static_cast<Index>(j));
     materials.push_back(material_of<Material>(values));
   }
-  if (of_tet.empty()) {
+  if (of_cell.empty()) {
     require_size("number of materials", rows.rows(), 1);
     return materials;
   }
-  require_size("material of each tet", static_cast<Index>(of_tet.size()), num_tets);
+  require_size("material of each cell", static_cast<Index>(of_cell.size()), num_cells);
   std::vector<Material<double>> result;
-  result.reserve(of_tet.size());
-  for (const std::int32_t k : of_tet) {
+  result.reserve(of_cell.size());
+  for (const std::int32_t k : of_cell) {
     require(k >= 0 && k < rows.rows(), "material " + std::to_string(k) + " does not exist, expected 0 to " +
                                            std::to_string(rows.rows() - 1));
     result.push_back(materials[k]);
@@ -91,6 +98,14 @@ std::string objection_to(const Material<double>& material) {
   return "";
 }
 
+/// The model of a mesh, its type erased; see MaterialLaw::tets.
+template <template <typename> class Material, SolidComponent component = SolidComponent::Element, typename Mesh>
+auto erased_solid(const Mesh& mesh, const RowMatrix& materials, const std::vector<std::int32_t>& of_cell) {
+  using Model = SolidElasticity<ElementOf<Mesh>, Material, component>;
+  return std::make_shared<const AnyModel<Model::stencil_size>>(
+      std::make_shared<const Model>(mesh, materials_of_cells<Material>(num_cells(mesh), materials, of_cell)));
+}
+
 /// The law of a material. `Material` says, beside its formulas (see materials.hpp), the names of its parameters,
 /// `static constexpr std::array parameter_names{"mu", …}`, and how they follow from moduli, `static Material
 /// from(const IsotropicModuli&)`.
@@ -99,6 +114,12 @@ MaterialLaw make_material_law(std::string name) {
   constexpr auto& names = Material<double>::parameter_names;
   static_assert(std::size(names) == num_material_parameters<Material>, "parameter_names must name every member");
   const Matrix3<double> inverted = Point(-0.5, 1, 1).asDiagonal();
+  const auto cells = [](const auto& mesh, const RowMatrix& materials, const std::vector<std::int32_t>& of_cell,
+                        SolidComponent component) {
+    return component == SolidComponent::GaussPoint
+               ? erased_solid<Material, SolidComponent::GaussPoint>(mesh, materials, of_cell)
+               : erased_solid<Material>(mesh, materials, of_cell);
+  };
   return {
       .name = std::move(name),
       .parameters = {names.begin(), names.end()},
@@ -118,9 +139,10 @@ MaterialLaw make_material_law(std::string name) {
           },
       .tets =
           [](const TetMesh& mesh, const RowMatrix& materials, const std::vector<std::int32_t>& of_tet) {
-            return std::make_shared<const AnyModel<4>>(std::make_shared<const TetElasticity<Material>>(
-                mesh, materials_of_tets<Material>(mesh.num_tets(), materials, of_tet)));
+            return erased_solid<Material>(mesh, materials, of_tet);
           },
+      .hexahedra = cells,
+      .quadratic_tets = cells,
   };
 }
 

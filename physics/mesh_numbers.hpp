@@ -6,9 +6,10 @@
 
 namespace supple {
 
-/// The numbers that a file gives to nodes and elements, by which messages call them. Empty: by index.
+/// The numbers that a file gives to nodes and elements, by which messages call them. Empty: by index. Cells are tets,
+/// hexahedra and the like.
 struct MeshNumbers {
-  std::vector<std::int64_t> node = {}, tet = {}, triangle = {};
+  std::vector<std::int64_t> node = {}, cell = {}, triangle = {};
 };
 
 }  // namespace supple

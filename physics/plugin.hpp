@@ -21,7 +21,8 @@ namespace supple {
 class PluginRegistry {
  public:
   virtual ~PluginRegistry() = default;
-  /// A law of solids; with a function `tets` of its own it may be any element of tets' nodes.
+  /// A law of solids; with a function `tets` of its own it may be any element of tets' nodes. Where it leaves
+  /// `hexahedra` and `quadratic_tets` empty, meshes of these are refused.
   /// \throws std::invalid_argument if there is one of this name.
   virtual void add(MaterialLaw law) = 0;
 };

@@ -2,14 +2,24 @@
 
 namespace supple {
 
-Solid isotropic_solid(TetMesh mesh, const IsotropicModuli& moduli, std::vector<Index> fixed_nodes,
-                      std::string_view law, double density) {
-  const std::vector<double> parameters = material_law(law).values(moduli);
-  Solid solid{.mesh = std::move(mesh), .law = std::string(law)};
-  solid.parameters = Eigen::Map<const RowMatrix>(parameters.data(), 1, static_cast<Index>(parameters.size()));
-  solid.density = Vector::Constant(1, density);
-  solid.fixed_nodes = std::move(fixed_nodes);
-  return solid;
+namespace {
+
+template <typename Mesh>
+auto of_cells(const SolidOf<Mesh>& solid, const MaterialLaw::CellModel<Mesh>& make, const char* cells) {
+  require(static_cast<bool>(make), "the material law " + solid.law + " is an element of tets only, it has none of " + cells);
+  return make(solid.mesh, solid.parameters, solid.material_of_cell, solid.component);
+}
+
+}  // namespace
+
+std::shared_ptr<const AnyModel<4>> force_model(const Solid& solid) {
+  return material_law(solid.law).tets(solid.mesh, solid.parameters, solid.material_of_cell);
+}
+std::shared_ptr<const AnyModel<8>> force_model(const HexSolid& solid) {
+  return of_cells(solid, material_law(solid.law).hexahedra, "hexahedra");
+}
+std::shared_ptr<const AnyModel<10>> force_model(const QuadraticTetSolid& solid) {
+  return of_cells(solid, material_law(solid.law).quadratic_tets, "quadratic tets");
 }
 
 }  // namespace supple

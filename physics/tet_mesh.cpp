@@ -39,13 +39,13 @@ void visit_faces(const TetMesh& mesh, const Visit& visit) {
 
 struct EdgeVectors {
   Point ab, ac, ad;
-  EdgeVectors(const TetMesh& mesh, Index e) {
-    const Tet& tet = mesh.tets[e];
-    const Point a = mesh.nodes.row(tet[0]);
-    ab = mesh.nodes.row(tet[1]).transpose() - a;
-    ac = mesh.nodes.row(tet[2]).transpose() - a;
-    ad = mesh.nodes.row(tet[3]).transpose() - a;
+  EdgeVectors(const Points& nodes, const Tet& tet) {
+    const Point a = nodes.row(tet[0]);
+    ab = nodes.row(tet[1]).transpose() - a;
+    ac = nodes.row(tet[2]).transpose() - a;
+    ad = nodes.row(tet[3]).transpose() - a;
   }
+  EdgeVectors(const TetMesh& mesh, Index e) : EdgeVectors(mesh.nodes, mesh.tets[e]) {}
 };
 
 }  // namespace
@@ -80,7 +80,11 @@ int tet_orientation(const TetMesh& mesh, Index e) {
 }
 
 double radius_ratio(const TetMesh& mesh, Index e) {
-  const EdgeVectors tet(mesh, e);
+  return radius_ratio(mesh.nodes, mesh.tets[e]);
+}
+
+double radius_ratio(const Points& nodes, const Tet& corners) {
+  const EdgeVectors tet(nodes, corners);
   const Point bc = tet.ab.cross(tet.ac), cd = tet.ac.cross(tet.ad), db = tet.ad.cross(tet.ab);
   const double det = std::abs(bc.dot(tet.ad));  // 6 V
   if (!(det > 0)) return 0;
@@ -96,7 +100,7 @@ void check_mesh(const TetMesh& mesh, const MeshNumbers& numbers) {
   const auto name = [](const std::vector<std::int64_t>& number, Index k) {
     return std::to_string(number.empty() ? k : number[k]);
   };
-  const auto tet_name = [&](Index e) { return "tet " + name(numbers.tet, e); };
+  const auto tet_name = [&](Index e) { return "tet " + name(numbers.cell, e); };
   const auto node_name = [&](Index v) { return "node " + name(numbers.node, v); };
 
   require(mesh.num_tets() > 0, "mesh has no tets");

@@ -46,6 +46,7 @@ int tet_orientation(const TetMesh& mesh, Index e);
 
 /// 3 inradius / circumradius of tet e: 1 if regular, 0 if flat.
 double radius_ratio(const TetMesh& mesh, Index e);
+double radius_ratio(const Points& nodes, const Tet& tet);
 
 /// Makes sure that a mesh is fit for elasticity: keeps what TetMesh promises.
 /// \throws std::invalid_argument that names the first tet, node or face at fault.

@@ -2,7 +2,9 @@
 #include <reduction/reduced_model.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <concepts>
 
 namespace supple {
 
@@ -24,14 +26,33 @@ std::vector<std::array<std::int32_t, corners>> narrow(const std::vector<std::arr
   return result;
 }
 
-void add_body(TensorFileWriter& file, const Solid& solid) {
+/// What the arrays over the cells of a solid are called.
+template <typename Mesh>
+struct CellArrays {
+  const char *cells, *material = "material.of_cell";
+};
+template <typename Mesh>
+constexpr CellArrays<Mesh> arrays = {};
+template <>
+constexpr CellArrays<TetMesh> arrays<TetMesh> = {"mesh.tets", "material.of_tet"};
+template <>
+constexpr CellArrays<HexMesh> arrays<HexMesh> = {"mesh.hexahedra"};
+template <>
+constexpr CellArrays<QuadraticTetMesh> arrays<QuadraticTetMesh> = {"mesh.quadratic_tets"};
+
+constexpr const char *component_key = "component", *gauss_point = "gauss-point";
+
+template <typename Mesh>
+void add_body(TensorFileWriter& file, const SolidOf<Mesh>& solid) {
   for (const auto& [tag, name] : solid.mesh.region_names)
     file.metadata["region." + std::to_string(tag)] = name;
-  file.add("mesh.tets", narrow(solid.mesh.tets));
+  if (!std::same_as<Mesh, TetMesh> && solid.component == SolidComponent::GaussPoint)
+    file.metadata[component_key] = gauss_point;
+  file.add(arrays<Mesh>.cells, narrow(cells_of(solid.mesh)));
   if (!solid.mesh.region.empty())
     file.add("mesh.region", std::vector<std::int32_t>(solid.mesh.region.begin(), solid.mesh.region.end()));
   file.add("material.parameters", solid.parameters);
-  if (!solid.material_of_tet.empty()) file.add("material.of_tet", solid.material_of_tet);
+  if (!solid.material_of_cell.empty()) file.add(arrays<Mesh>.material, solid.material_of_cell);
   file.add("density", solid.density);
 }
 
@@ -93,11 +114,19 @@ class ModelReader {
   const TensorFile file;
 };
 
-Solid read_solid(const ModelReader& in, Points nodes) {
-  Solid solid;
+template <typename Mesh>
+SolidOf<Mesh> read_solid(const ModelReader& in, Points nodes) {
+  SolidOf<Mesh> solid;
   solid.mesh.nodes = std::move(nodes);
-  solid.mesh.tets = in.elements<4>("mesh.tets", solid.mesh.num_nodes());
-  const Index m = solid.mesh.num_tets();
+  cells_of(solid.mesh) = in.elements<ElementOf<Mesh>::num_nodes>(arrays<Mesh>.cells, solid.mesh.num_nodes());
+  const Index m = num_cells(solid.mesh);
+  if (in.file.metadata().contains(component_key)) {
+    const std::string& component = in.file.metadata(component_key);
+    if (std::same_as<Mesh, TetMesh> || component != gauss_point)
+      throw in.fail("component is '" + component + "', expected " +
+                    (std::same_as<Mesh, TetMesh> ? "none for tets" : std::string(gauss_point) + ", or none for cells"));
+    solid.component = SolidComponent::GaussPoint;
+  }
   if (in.file.contains("mesh.region")) {
     const auto region = in.file.values<std::int32_t>("mesh.region", {m});
     solid.mesh.region.assign(region.begin(), region.end());
@@ -106,9 +135,9 @@ Solid read_solid(const ModelReader& in, Points nodes) {
     if (key.starts_with("region.")) solid.mesh.region_names[in.whole_number(key, key.substr(7))] = text;
   solid.law = in.file.metadata("material.law");
   solid.parameters = in.finite_matrix("material.parameters");
-  if (in.file.contains("material.of_tet")) {
-    const auto of_tet = in.file.values<std::int32_t>("material.of_tet", {m});
-    solid.material_of_tet.assign(of_tet.begin(), of_tet.end());
+  if (in.file.contains(arrays<Mesh>.material)) {
+    const auto of_cell = in.file.values<std::int32_t>(arrays<Mesh>.material, {m});
+    solid.material_of_cell.assign(of_cell.begin(), of_cell.end());
   }
   solid.density = in.finite_vector("density");
   return solid;
@@ -124,6 +153,24 @@ Shell read_shell(const ModelReader& in, Points nodes) {
   shell.thickness = in.finite_vector("thickness");
   shell.density = in.finite_vector("density");
   return shell;
+}
+
+/// The object of whatever cells the file has.
+Body read_body(const ModelReader& in, Points nodes) {
+  constexpr std::array cells{arrays<TetMesh>.cells, arrays<HexMesh>.cells, arrays<QuadraticTetMesh>.cells, "mesh.triangles"};
+  std::vector<const char*> present;
+  for (const char* name : cells)
+    if (in.file.contains(name)) present.push_back(name);
+  if (present.size() > 1) throw in.fail("there are both " + std::string(present[0]) + " and " + present[1]);
+  if (present.empty()) {
+    std::string names;
+    for (const char* name : cells) names += (names.empty() ? "" : ", ") + std::string(name);
+    throw in.fail("there are no cells, expected one of " + names);
+  }
+  if (present[0] == cells[1]) return read_solid<HexMesh>(in, std::move(nodes));
+  if (present[0] == cells[2]) return read_solid<QuadraticTetMesh>(in, std::move(nodes));
+  if (present[0] == cells[3]) return read_shell(in, std::move(nodes));
+  return read_solid<TetMesh>(in, std::move(nodes));
 }
 
 }  // namespace
@@ -169,10 +216,7 @@ ReducedModel load_model(const std::filesystem::path& path) {
   ReducedModel model;
   const Points nodes = in.finite_matrix("mesh.nodes", TensorFile::any, 3);
   const Index n = nodes.rows();
-  if (file.contains("mesh.triangles"))
-    model.body = read_shell(in, nodes);
-  else
-    model.body = read_solid(in, nodes);
+  model.body = read_body(in, nodes);
   for (const auto& [key, text] : file.metadata())
     if (key.starts_with("provenance.")) model.provenance[key.substr(11)] = text;
   std::visit(

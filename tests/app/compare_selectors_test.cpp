@@ -43,6 +43,14 @@ TEST_F(CompareSelectorsTest, RunsEverySelectorAtEverySizeWithEverySeed) {
   EXPECT_THAT(page, HasSubstr("</html>"));
 }
 
+TEST_F(CompareSelectorsTest, CountsGaussPointsOfHexahedra) {
+  Arguments arguments = small({"--components", "gauss-points", "--selectors", "nn-sp", "--sizes", "20", "--runs", "1"});
+  arguments[1] = "hexbox:6x2x2";
+  EXPECT_THAT(report(arguments)["description"].get<std::string>(), HasSubstr("192 Gauss points"));
+  arguments[1] = "bar:8x2x2";
+  expect_refusal(arguments, {"--components"});
+}
+
 TEST_F(CompareSelectorsTest, RefusesWhatItCannotRun) {
   expect_refusal(small({"--selectors", "nn-sp,best"}), {"best"});
   expect_refusal(small({"--sizes", "20,1000"}), {"--sizes", "1000"});

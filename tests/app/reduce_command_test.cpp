@@ -23,6 +23,16 @@ class ReduceCommandTest : public SuppleProcess {
     return arguments;
   }
 
+  /// A mesh of few cells, by so many points.
+  static Arguments cells(const std::string& mesh, Arguments more = {}) {
+    Arguments arguments{"reduce", mesh,      "-o", "bar.supple", "--fix", "x<=0",         "--modes",
+                        "4",      "--poses", "20", "--points",   "24",    "--held-out", "5"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  /// Removes and spoils each array of the model that a job makes, in turn.
+  void expect_arrays_checked(const Arguments& job) const;
+
   /// Two tets in regions 1 and 2, on the face x = 0.
   void write_two_regions() const {
     write("two.mesh",
@@ -134,7 +144,7 @@ TEST_F(ReduceCommandTest, GivesRegionsTheirOwnMaterials) {
   write("materials.json", R"({"regions": {"2": {"young": "1 MPa", "density": 500}}})");
   ASSERT_EQ(supple(job).exit_code, 0);
   const ReducedModel model = load_model(folder / "two.supple");
-  EXPECT_THAT(std::get<Solid>(model.body).material_of_tet, ElementsAre(0, 1));
+  EXPECT_THAT(std::get<Solid>(model.body).material_of_cell, ElementsAre(0, 1));
   EXPECT_DOUBLE_EQ(std::get<Solid>(model.body).parameters(1, 1) / std::get<Solid>(model.body).parameters(0, 1), 10);
   EXPECT_DOUBLE_EQ(std::get<Solid>(model.body).density[0], 1000);
   EXPECT_DOUBLE_EQ(std::get<Solid>(model.body).density[1], 500);
@@ -299,8 +309,8 @@ TEST_F(ReduceCommandTest, RefusesDamagedModels) {
 }
 
 /// Arrays that are whole but wrong: each is put in place of the good one, with checksums that hold.
-TEST_F(ReduceCommandTest, RefusesModelsWhoseArraysContradict) {
-  ASSERT_EQ(supple(small()).exit_code, 0);
+void ReduceCommandTest::expect_arrays_checked(const Arguments& job) const {
+  ASSERT_EQ(supple(job).exit_code, 0);
   const TensorFile good(folder / "bar.supple");
   const auto with = [&](const std::string& name, const auto& replace) {
     TensorFileWriter file;
@@ -336,6 +346,101 @@ TEST_F(ReduceCommandTest, RefusesModelsWhoseArraysContradict) {
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), outcome.exit_code == 0 ? 0 : 1)
         << name;
   }
+}
+
+TEST_F(ReduceCommandTest, RefusesModelsWhoseArraysContradict) {
+  expect_arrays_checked(small());
+  expect_arrays_checked(cells("hexbox:6x2x2", {"--components", "gauss-points"}));
+  expect_arrays_checked(cells("tet10:bar:3x1x1"));
+  // what tells the components apart
+  ASSERT_EQ(supple(cells("hexbox:6x2x2", {"--components", "gauss-points"})).exit_code, 0);
+  ReducedModel model = load_model(folder / "bar.supple");
+  std::get<HexSolid>(model.body).component = SolidComponent::Element;
+  model.indices.back() = 191;
+  save_model(folder / "bar.supple", model);
+  expect_refusal({"info", "bar.supple"}, {"bar.supple", "names component", "0 to 23"});
+  TensorFileWriter both;
+  both.metadata = {{"format", "supple reduced model"}, {"format_version", "1"}};
+  both.add("mesh.nodes", RowMatrix(RowMatrix::Zero(8, 3)));
+  both.add("mesh.tets", std::vector<std::array<std::int32_t, 4>>{{0, 1, 2, 3}});
+  both.add("mesh.hexahedra", std::vector<std::array<std::int32_t, 8>>{{0, 1, 2, 3, 4, 5, 6, 7}});
+  both.write(folder / "both.supple");
+  expect_refusal({"info", "both.supple"}, {"both.supple", "both mesh.tets and mesh.hexahedra"});
+  both.metadata["component"] = "gauss-point";
+  TensorFileWriter tets;
+  tets.metadata = both.metadata;
+  tets.add("mesh.nodes", RowMatrix(RowMatrix::Zero(8, 3)));
+  tets.add("mesh.tets", std::vector<std::array<std::int32_t, 4>>{{0, 1, 2, 3}});
+  tets.write(folder / "tets.supple");
+  expect_refusal({"info", "tets.supple"}, {"tets.supple", "'gauss-point'", "none for tets"});
+}
+
+TEST_F(ReduceCommandTest, TakesHexahedraAndQuadraticTets) {
+  struct Job {
+    std::string mesh, kind;
+    Index cells, points_per_cell;
+  };
+  for (const Job& job : {Job{"hexbox:6x2x2", "hexahedra", 24, 8}, Job{"tet10:bar:3x1x1", "quadratic_tets", 18, 4}}) {
+    SCOPED_TRACE(job.mesh);
+    const json whole = report(cells(job.mesh, {"--material", "neo-hookean", "--picture", "bar.png"}));
+    EXPECT_EQ(whole["mesh"][job.kind], job.cells);
+    EXPECT_FALSE(whole["mesh"].contains("tets"));
+    EXPECT_EQ(whole["mesh"]["warnings"].size(), 0u);
+    EXPECT_LE(whole["points"], job.cells);
+    EXPECT_LT(whole["training_error"], 0.5);
+    EXPECT_EQ(whole["options"]["components"], "cells");
+    EXPECT_NEAR(whole["mesh"]["mass"].get<double>(), 1000.0 / 9, 1e-9);
+    EXPECT_GT(read_png(folder / "bar.png").width, 600);
+    const json info = report({"info", "bar.supple"});
+    EXPECT_EQ(info["mesh"][job.kind], job.cells);
+    EXPECT_NEAR(info["mesh"]["volume"].get<double>(), 1.0 / 9, 1e-12);
+    EXPECT_EQ(info["mesh"]["boundary_faces"], job.points_per_cell == 8 ? 56 : 28);
+    EXPECT_EQ(info["law"], "neo-hookean");
+    const json points = report(cells(job.mesh, {"--components", "gauss-points"}));
+    EXPECT_EQ(points["mesh"]["gauss_points"], job.cells * job.points_per_cell);
+    EXPECT_EQ(points["mesh"][job.kind], job.cells);
+    EXPECT_LT(points["training_error"], 0.5);
+    EXPECT_EQ(report({"info", "bar.supple"})["component"], "Gauss points");
+    // the object is the same one
+    EXPECT_NEAR(points["eigenvalues"]["exact"][0].get<double>() / whole["eigenvalues"]["exact"][0].get<double>(), 1, 1e-6);
+    EXPECT_GT(report({"simulate", "bar.supple", "--time", "0.05"})["steps"], 0);
+    EXPECT_EQ(report({"info", job.mesh})[job.kind], job.cells);
+    ASSERT_EQ(supple({"mesh", job.mesh, "-o", "mesh.vtu"}).exit_code, 0);
+    EXPECT_EQ(report({"info", "mesh.vtu"})[job.kind], job.cells);
+    EXPECT_EQ(report(cells("mesh.vtu", {"--material", "neo-hookean"}))["training_error"], whole["training_error"]);
+  }
+  EXPECT_NEAR(report({"info", "hexbox:2x1x1"})["scaled_jacobian"]["worst"].get<double>(), 1, 1e-12);
+  expect_refusal(small({"--components", "gauss-points"}), {"--components", "linear tet"});
+  expect_refusal({"reduce", "sphere:8", "-o", "m", "--components", "gauss-points"}, {"--components", "flaps"});
+  expect_refusal(small({"--components", "corners"}), {"corners"});
+  expect_refusal(cells("hexbox:6x2x2", {"--thickness", "1%"}), {"--thickness", "hexahedra"});
+  expect_refusal(cells("hexbox:6x2", {}), {"hexbox:6x2", "hexbox:40x10x10"});
+}
+
+TEST_F(ReduceCommandTest, GivesRegionsOfHexahedraTheirOwnMaterials) {
+  write("two.mesh",
+        "MeshVersionFormatted 2\nDimension 3\nVertices\n12\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n1 1 1 0\n"
+        "0 1 1 0\n0 0 2 0\n1 0 2 0\n1 1 2 0\n0 1 2 0\nHexahedra\n2\n1 2 3 4 5 6 7 8 1\n5 6 7 8 9 10 11 12 2\nEnd\n");
+  write("materials.json", R"({"law": "ogden", "regions": {"2": {"young": "1 MPa", "density": 500}}})");
+  const json made = report({"reduce", "two.mesh", "-o", "two.supple", "--fix-region", "1", "--modes", "2", "--poses", "10", "--points",
+                            "2", "--materials", "materials.json"});
+  EXPECT_EQ(made["mesh"]["fixed_nodes"], 8);
+  EXPECT_EQ(made["options"]["material"], "ogden");
+  const HexSolid solid = std::get<HexSolid>(load_model(folder / "two.supple").body);
+  EXPECT_THAT(solid.material_of_cell, ElementsAre(0, 1));
+  EXPECT_THAT(solid.mesh.region, ElementsAre(1, 2));
+  EXPECT_DOUBLE_EQ(solid.density[1], 500);
+  EXPECT_NEAR(solid.parameters(1, 0) / solid.parameters(0, 0), 10, 1e-12);
+}
+
+TEST_F(ReduceCommandTest, BlamesTheLawOnWhoNamedIt) {
+  write("materials.json", R"({"young": "1 MPa"})");
+  const Outcome typed = supple(small({"--material", "gum", "--materials", "materials.json"}));
+  EXPECT_EQ(typed.exit_code, 2);
+  EXPECT_THAT(typed.err, HasSubstr("--material: material law 'gum'"));
+  EXPECT_THAT(typed.err, testing::Not(HasSubstr("materials.json")));
+  write("materials.json", R"({"law": "gum"})");
+  expect_refusal(small({"--material", "ogden", "--materials", "materials.json"}), {"materials.json", "'gum'"});
 }
 
 TEST_F(ReduceCommandTest, TakesLawsAndTheirParametersByName) {
@@ -382,6 +487,9 @@ TEST_F(ReduceCommandTest, LoadsMaterialsOfOnesOwn) {
   EXPECT_GT(report({"simulate", "bar.supple", "--plugin", plugin, "--time", "0.1"})["steps"], 0);
   const json springs = report(small({"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets"}));
   EXPECT_LT(springs["training_error"], 0.5);
+  expect_refusal(cells("hexbox:6x2x2", {"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets"}),
+                 {"spring-tets", "hexahedra"});
+  EXPECT_LT(report(cells("hexbox:6x2x2", {"--plugin", plugin, "--material", "gent"}))["training_error"], 0.5);
   expect_refusal(small({"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets", "--parameter",
                         "modulus=-1"}),
                  {"spring-tets", "not positive"});

@@ -24,39 +24,74 @@ std::string raw(Number value, bool big_endian = false) {
   return bytes;
 }
 
-std::string xyz(const TetMesh& mesh, Index v) {
+template <typename Mesh>
+std::string xyz(const Mesh& mesh, Index v) {
   return text(mesh.nodes(v, 0)) + " " + text(mesh.nodes(v, 1)) + " " + text(mesh.nodes(v, 2));
 }
 
+/// What the formats call a cell of so many nodes.
+struct CellWords {
+  int gmsh, vtk;
+  const char *medit, *vega;
+};
+template <std::size_t size>
+constexpr CellWords words = size == 4   ? CellWords{4, 10, "Tetrahedra", "TET"}
+                            : size == 8 ? CellWords{5, 12, "Hexahedra", "CUBIC"}
+                                        : CellWords{11, 24, "TetrahedraP2", ""};
+template <typename Mesh>
+constexpr CellWords words_of = words<ElementOf<Mesh>::num_nodes>;
+template <typename Mesh>
+constexpr Index cell_size = ElementOf<Mesh>::num_nodes;
+
 /// " a b c d", counted from `first`.
-std::string corners(const Tet& tet, Index first) {
+template <std::size_t size>
+std::string corners(const std::array<Index, size>& cell, Index first) {
   std::string line;
-  for (const Index v : tet) line += " " + std::to_string(v + first);
+  for (const Index v : cell) line += " " + std::to_string(v + first);
   return line;
 }
 
-int region(const TetMesh& mesh, Index e) {
+/// Gmsh lists the node amid edge 23 before that of edge 13.
+template <std::size_t size>
+std::array<Index, size> in_gmsh(std::array<Index, size> cell) {
+  if constexpr (size == 10) std::swap(cell[8], cell[9]);
+  return cell;
+}
+/// An order of mid-edge nodes that no format of known order has.
+template <std::size_t size>
+std::array<Index, size> in_some_order(std::array<Index, size> cell) {
+  if constexpr (size == 10) {
+    std::reverse(cell.begin() + 4, cell.end());
+    std::swap(cell[5], cell[7]);
+  }
+  return cell;
+}
+
+int region(const auto& mesh, Index e) {
   return mesh.region.empty() ? 0 : mesh.region[e];
 }
 
-std::string physical_names(const TetMesh& mesh) {
+template <typename Mesh>
+std::string physical_names(const Mesh& mesh) {
   std::string s = "$PhysicalNames\n" + std::to_string(mesh.region_names.size()) + "\n";
   for (const auto& [tag, name] : mesh.region_names) s += "3 " + std::to_string(tag) + " \"" + name + "\"\n";
   return s + "$EndPhysicalNames\n";
 }
 
-std::string gmsh_22(const TetMesh& mesh) {
+template <typename Mesh>
+std::string gmsh_22(const Mesh& mesh) {
   std::string s = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + physical_names(mesh);
   s += "$Nodes\n" + std::to_string(mesh.num_nodes()) + "\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += std::to_string(v + 1) + " " + xyz(mesh, v) + "\n";
-  s += "$EndNodes\n$Elements\n" + std::to_string(mesh.num_tets() + 1) + "\n1 15 2 7 7 1\n";
-  for (Index e = 0; e < mesh.num_tets(); ++e)
-    s += std::to_string(e + 2) + " 4 2 " + std::to_string(region(mesh, e)) + " 1" + corners(mesh.tets[e], 1) +
-         "\n";
+  s += "$EndNodes\n$Elements\n" + std::to_string(num_cells(mesh) + 1) + "\n1 15 2 7 7 1\n";
+  for (Index e = 0; e < num_cells(mesh); ++e)
+    s += std::to_string(e + 2) + " " + std::to_string(words_of<Mesh>.gmsh) + " 2 " + std::to_string(region(mesh, e)) +
+         " 1" + corners(in_gmsh(cells_of(mesh)[e]), 1) + "\n";
   return s + "$EndElements\n";
 }
 
-std::string gmsh_22_binary(const TetMesh& mesh, bool big) {
+template <typename Mesh>
+std::string gmsh_22_binary(const Mesh& mesh, bool big) {
   std::string s =
       "$MeshFormat\n2.2 1 8\n" + raw(std::int32_t{1}, big) + "\n$EndMeshFormat\n" + physical_names(mesh);
   s += "$Nodes\n" + std::to_string(mesh.num_nodes()) + "\n";
@@ -64,19 +99,20 @@ std::string gmsh_22_binary(const TetMesh& mesh, bool big) {
     s += raw(static_cast<std::int32_t>(v + 1), big);
     for (int c = 0; c < 3; ++c) s += raw(mesh.nodes(v, c), big);
   }
-  s += "\n$EndNodes\n$Elements\n" + std::to_string(mesh.num_tets()) + "\n";
+  s += "\n$EndNodes\n$Elements\n" + std::to_string(num_cells(mesh)) + "\n";
   const auto integer = [&](Index value) { s += raw(static_cast<std::int32_t>(value), big); };
-  integer(4), integer(mesh.num_tets()), integer(2);
-  for (Index e = 0; e < mesh.num_tets(); ++e) {
+  integer(words_of<Mesh>.gmsh), integer(num_cells(mesh)), integer(2);
+  for (Index e = 0; e < num_cells(mesh); ++e) {
     integer(e + 1), integer(region(mesh, e)), integer(1);
-    for (const Index v : mesh.tets[e]) integer(v + 1);
+    for (const Index v : in_gmsh(cells_of(mesh)[e])) integer(v + 1);
   }
   return s + "\n$EndElements\n$ElementData\nsome bytes: " + raw(std::int32_t{0x24456e64}) +
          "$EndElementData\n";
 }
 
 /// Gmsh 4.1 with a volume entity, 10 + tag, for each region.
-std::string gmsh_41(const TetMesh& mesh, bool binary) {
+template <typename Mesh>
+std::string gmsh_41(const Mesh& mesh, bool binary) {
   std::string s = std::string("$MeshFormat\n4.1 ") +
                   (binary ? "1 8\n" + raw(std::int32_t{1}) + "\n" : "0 8\n") + "$EndMeshFormat\n" +
                   physical_names(mesh);
@@ -115,63 +151,70 @@ std::string gmsh_41(const TetMesh& mesh, bool binary) {
   }
   s += "\n$EndNodes\n$Elements\n";
   std::vector<std::vector<Index>> blocks;  // runs of one region, to keep the order of tets
-  for (Index e = 0; e < mesh.num_tets(); ++e) {
+  for (Index e = 0; e < num_cells(mesh); ++e) {
     if (blocks.empty() || region(mesh, blocks.back()[0]) != region(mesh, e)) blocks.emplace_back();
     blocks.back().push_back(e);
   }
-  size(static_cast<Index>(blocks.size())), size(mesh.num_tets()), size(1), size(mesh.num_tets());
+  size(static_cast<Index>(blocks.size())), size(num_cells(mesh)), size(1), size(num_cells(mesh));
   for (const std::vector<Index>& block : blocks) {
-    integer(3), integer(10 + region(mesh, block[0])), integer(4), size(static_cast<Index>(block.size()));
+    integer(3), integer(10 + region(mesh, block[0])), integer(words_of<Mesh>.gmsh),
+        size(static_cast<Index>(block.size()));
     for (const Index e : block) {
       size(e + 1);
-      for (const Index v : mesh.tets[e]) size(v + 1);
+      for (const Index v : in_gmsh(cells_of(mesh)[e])) size(v + 1);
     }
   }
   return s + "\n$EndElements\n";
 }
 
-std::string medit(const TetMesh& mesh) {
+template <typename Mesh>
+std::string medit(const Mesh& mesh) {
   std::string s = "MeshVersionFormatted 2\n# a comment\nDimension 3\nVertices\n" +
                   std::to_string(mesh.num_nodes()) + "\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += xyz(mesh, v) + " 0\n";
-  s += "RequiredVertices\n2\n1\n2\nTriangles\n1\n1 2 3 9\nTetrahedra\n" + std::to_string(mesh.num_tets()) +
+  s += "RequiredVertices\n2\n1\n2\nTriangles\n1\n1 2 3 9\n" + std::string(words_of<Mesh>.medit) + "\n" + std::to_string(num_cells(mesh)) +
        "\n";
-  for (Index e = 0; e < mesh.num_tets(); ++e)
-    s += corners(mesh.tets[e], 1).substr(1) + " " + std::to_string(region(mesh, e)) + "\n";
+  for (Index e = 0; e < num_cells(mesh); ++e)
+    s += corners(in_some_order(cells_of(mesh)[e]), 1).substr(1) + " " + std::to_string(region(mesh, e)) + "\n";
   return s + "End\n";
 }
 
-std::string tetgen_node(const TetMesh& mesh, Index first) {
+template <typename Mesh>
+std::string tetgen_node(const Mesh& mesh, Index first) {
   std::string s = "# nodes\n" + std::to_string(mesh.num_nodes()) + " 3 1 1\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v)
     s += std::to_string(v + first) + " " + xyz(mesh, v) + " 0.5 1 # more\n";
   return s;
 }
 
-std::string tetgen_ele(const TetMesh& mesh, Index first) {
-  std::string s = std::to_string(mesh.num_tets()) + " 4 1\n\n";
-  for (Index e = 0; e < mesh.num_tets(); ++e)
-    s += std::to_string(e + first) + corners(mesh.tets[e], first) + " " + std::to_string(region(mesh, e)) +
+template <typename Mesh>
+std::string tetgen_ele(const Mesh& mesh, Index first) {
+  std::string s = std::to_string(num_cells(mesh)) + " " + std::to_string(cell_size<Mesh>) + " 1\n\n";
+  for (Index e = 0; e < num_cells(mesh); ++e)
+    s += std::to_string(e + first) + corners(in_some_order(cells_of(mesh)[e]), first) + " " + std::to_string(region(mesh, e)) +
          "\n";
   return s;
 }
 
-std::string vega(const TetMesh& mesh) {
+template <typename Mesh>
+std::string vega(const Mesh& mesh) {
   std::string s = "# Vega\n*VERTICES\n" + std::to_string(mesh.num_nodes()) + " 3 0 0\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += std::to_string(v + 1) + " " + xyz(mesh, v) + "\n";
-  s += "*ELEMENTS\nTET\n" + std::to_string(mesh.num_tets()) + " 4 0\n";
-  for (Index e = 0; e < mesh.num_tets(); ++e) s += std::to_string(e + 1) + corners(mesh.tets[e], 1) + "\n";
+  s += "*ELEMENTS\n" + std::string(words_of<Mesh>.vega) + "\n" + std::to_string(num_cells(mesh)) + " " +
+       std::to_string(cell_size<Mesh>) + " 0\n";
+  for (Index e = 0; e < num_cells(mesh); ++e) s += std::to_string(e + 1) + corners(cells_of(mesh)[e], 1) + "\n";
   s += "*MATERIAL rubber\nENU, 1000, 1e6, 0.45\n";
   for (const auto& [tag, name] : mesh.region_names) {
     s += "*SET " + name + "\n";
-    for (Index e = 0, in_line = 0; e < mesh.num_tets(); ++e)
+    for (Index e = 0, in_line = 0; e < num_cells(mesh); ++e)
       if (region(mesh, e) == tag) s += std::to_string(e + 1) + (++in_line % 8 == 0 ? ",\n" : ", ");
     s += "\n*REGION\n" + name + ", rubber\n";
   }
   return s;
 }
 
-std::string legacy_vtk(const TetMesh& mesh, bool binary, bool version_5) {
+template <typename Mesh>
+std::string legacy_vtk(const Mesh& mesh, bool binary, bool version_5) {
   std::string s = std::string("# vtk DataFile Version ") + (version_5 ? "5.1" : "3.0") + "\ntitle\n" +
                   (binary ? "BINARY" : "ASCII") + "\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
                   std::to_string(mesh.num_nodes()) + " double\n";
@@ -184,29 +227,29 @@ std::string legacy_vtk(const TetMesh& mesh, bool binary, bool version_5) {
       s += text(value) + " ";
   };
   for (Index k = 0; k < mesh.nodes.size(); ++k) put(mesh.nodes.data()[k]);
-  const std::string m = std::to_string(mesh.num_tets());
+  const std::string m = std::to_string(num_cells(mesh));
   if (version_5) {
-    s += "\nMETADATA\nINFORMATION 0\n\nCELLS " + std::to_string(mesh.num_tets() + 1) + " " +
-         std::to_string(4 * mesh.num_tets()) + "\nOFFSETS vtktypeint64\n";
-    for (std::int64_t e = 0; e <= mesh.num_tets(); ++e) put(4 * e);
+    s += "\nMETADATA\nINFORMATION 0\n\nCELLS " + std::to_string(num_cells(mesh) + 1) + " " +
+         std::to_string(cell_size<Mesh> * num_cells(mesh)) + "\nOFFSETS vtktypeint64\n";
+    for (std::int64_t e = 0; e <= num_cells(mesh); ++e) put(cell_size<Mesh> * e);
     s += "\nCONNECTIVITY vtktypeint64\n";
-    for (const Tet& tet : mesh.tets)
-      for (const Index v : tet) put(static_cast<std::int64_t>(v));
+    for (const auto& cell : cells_of(mesh))
+      for (const Index v : cell) put(static_cast<std::int64_t>(v));
   } else {
-    s += "\nCELLS " + m + " " + std::to_string(5 * mesh.num_tets()) + "\n";
-    for (const Tet& tet : mesh.tets) {
-      put(std::int32_t{4});
-      for (const Index v : tet) put(static_cast<std::int32_t>(v));
+    s += "\nCELLS " + m + " " + std::to_string((cell_size<Mesh> + 1) * num_cells(mesh)) + "\n";
+    for (const auto& cell : cells_of(mesh)) {
+      put(static_cast<std::int32_t>(cell_size<Mesh>));
+      for (const Index v : cell) put(static_cast<std::int32_t>(v));
     }
   }
   s += "\nCELL_TYPES " + m + "\n";
-  for (Index e = 0; e < mesh.num_tets(); ++e) put(std::int32_t{10});
+  for (Index e = 0; e < num_cells(mesh); ++e) put(std::int32_t{words_of<Mesh>.vtk});
   s += "\nCELL_DATA " + m + "\n";
   s += version_5 ? "FIELD FieldData 2\nother 2 " + m + " float\n"
                  : "SCALARS other float\nLOOKUP_TABLE default\n";
-  for (Index e = 0; e < (version_5 ? 2 : 1) * mesh.num_tets(); ++e) put(0.5f);
+  for (Index e = 0; e < (version_5 ? 2 : 1) * num_cells(mesh); ++e) put(0.5f);
   s += version_5 ? "\nregion 1 " + m + " int\n" : "\nSCALARS region int 1\nLOOKUP_TABLE default\n";
-  for (Index e = 0; e < mesh.num_tets(); ++e) put(static_cast<std::int32_t>(region(mesh, e)));
+  for (Index e = 0; e < num_cells(mesh); ++e) put(static_cast<std::int32_t>(region(mesh, e)));
   return s + "\n";
 }
 
@@ -226,9 +269,10 @@ struct VtuStyle {
   bool appended, base64, zlib, wide_header, big_endian;
 };
 
+template <typename Mesh>
 class VtuWriter {
  public:
-  VtuWriter(const TetMesh& mesh, const VtuStyle& style) : mesh_(mesh), style_(style) {}
+  VtuWriter(const Mesh& mesh, const VtuStyle& style) : mesh_(mesh), style_(style) {}
 
   std::string write() {
     std::string s =
@@ -238,14 +282,14 @@ class VtuWriter {
         (style_.wide_header ? "UInt64" : "UInt32") + "\"" +
         (style_.zlib ? " compressor=\"vtkZLibDataCompressor\"" : "") +
         ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(mesh_.num_nodes()) +
-        "\" NumberOfCells=\"" + std::to_string(mesh_.num_tets()) + "\">\n";
+        "\" NumberOfCells=\"" + std::to_string(num_cells(mesh_)) + "\">\n";
     std::string points, connectivity, offsets, types, regions;
     for (Index k = 0; k < mesh_.nodes.size(); ++k) points += raw(mesh_.nodes.data()[k], style_.big_endian);
-    for (Index e = 0; e < mesh_.num_tets(); ++e) {
-      for (const Index v : mesh_.tets[e])
+    for (Index e = 0; e < num_cells(mesh_); ++e) {
+      for (const Index v : cells_of(mesh_)[e])
         connectivity += raw(static_cast<std::int32_t>(v), style_.big_endian);
-      offsets += raw(std::int64_t{4 * e + 4}, style_.big_endian);
-      types += raw(std::uint8_t{10});
+      offsets += raw(std::int64_t{cell_size<Mesh> * (e + 1)}, style_.big_endian);
+      types += raw(static_cast<std::uint8_t>(words_of<Mesh>.vtk));
       regions += raw(static_cast<std::int16_t>(region(mesh_, e)), style_.big_endian);
     }
     s += "<CellData>\n" + array("Int16", "gmsh:physical", regions) + "</CellData>\n";
@@ -293,18 +337,19 @@ class VtuWriter {
     return head + "appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
   }
 
-  const TetMesh& mesh_;
+  const Mesh& mesh_;
   VtuStyle style_;
   std::string appended_;
 };
 
-std::string vtu_ascii(const TetMesh& mesh) {
+template <typename Mesh>
+std::string vtu_ascii(const Mesh& mesh) {
   std::string points, connectivity, offsets, types, regions;
   for (Index v = 0; v < mesh.num_nodes(); ++v) points += xyz(mesh, v) + "\n";
-  for (Index e = 0; e < mesh.num_tets(); ++e) {
-    connectivity += corners(mesh.tets[e], 0) + "\n";
-    offsets += std::to_string(4 * e + 4) + " ";
-    types += "10 ";
+  for (Index e = 0; e < num_cells(mesh); ++e) {
+    connectivity += corners(cells_of(mesh)[e], 0) + "\n";
+    offsets += std::to_string(cell_size<Mesh> * (e + 1)) + " ";
+    types += std::to_string(words_of<Mesh>.vtk) + " ";
     regions += std::to_string(region(mesh, e)) + " ";
   }
   const auto array = [](const std::string& name, const std::string& values) {
@@ -312,30 +357,30 @@ std::string vtu_ascii(const TetMesh& mesh) {
   };
   return "<VTKFile type=\"UnstructuredGrid\">\n<!-- a comment -->\n<UnstructuredGrid><Piece "
          "NumberOfPoints=\"" +
-         std::to_string(mesh.num_nodes()) + "\" NumberOfCells=\"" + std::to_string(mesh.num_tets()) +
+         std::to_string(mesh.num_nodes()) + "\" NumberOfCells=\"" + std::to_string(num_cells(mesh)) +
          "\">\n<Points>" + array("Points\" NumberOfComponents=\"3", points) + "</Points><Cells>" +
          array("connectivity", connectivity) + array("offsets", offsets) + array("types", types) +
          "</Cells><CellData>" + array("Region", regions) +
          "</CellData></Piece></UnstructuredGrid></VTKFile>\n";
 }
 
-}  // namespace
-
-std::vector<MeshFile> in_every_format(const TetMesh& mesh) {
+template <typename Mesh>
+std::vector<MeshFile> every_format(const Mesh& mesh) {
   std::vector<MeshFile> files{{"gmsh_22_ascii", ".msh", gmsh_22(mesh), ""},
                               {"gmsh_22_binary", ".msh", gmsh_22_binary(mesh, false), ""},
                               {"gmsh_22_big_endian", ".msh", gmsh_22_binary(mesh, true), ""},
                               {"gmsh_41_ascii", ".msh", gmsh_41(mesh, false), ""},
                               {"gmsh_41_binary", ".msh", gmsh_41(mesh, true), ""},
                               {"medit_ascii", ".mesh", medit(mesh), ""},
-                              {"tetgen_from_0", ".node", tetgen_node(mesh, 0), tetgen_ele(mesh, 0)},
-                              {"tetgen_from_1", ".node", tetgen_node(mesh, 1), tetgen_ele(mesh, 1)},
-                              {"vega", ".veg", vega(mesh), ""},
                               {"vtk_3_ascii", ".vtk", legacy_vtk(mesh, false, false), ""},
                               {"vtk_3_binary", ".vtk", legacy_vtk(mesh, true, false), ""},
                               {"vtk_5_ascii", ".vtk", legacy_vtk(mesh, false, true), ""},
                               {"vtk_5_binary", ".vtk", legacy_vtk(mesh, true, true), ""},
                               {"vtu_ascii", ".vtu", vtu_ascii(mesh), ""}};
+  if constexpr (cell_size<Mesh> != 8)
+    for (const Index first : {0, 1})
+      files.push_back({"tetgen_from_" + std::to_string(first), ".node", tetgen_node(mesh, first), tetgen_ele(mesh, first)});
+  if constexpr (cell_size<Mesh> != 10) files.push_back({"vega", ".veg", vega(mesh), ""});
   const auto add = [&](const std::string& name, const VtuStyle& style) {
     files.push_back({name, ".vtu", VtuWriter(mesh, style).write(), ""});
   };
@@ -355,6 +400,18 @@ std::vector<MeshFile> in_every_format(const TetMesh& mesh) {
   add("vtu_appended_base64_zlib",
       S{.appended = true, .base64 = true, .zlib = true, .wide_header = true, .big_endian = true});
   return files;
+}
+
+}  // namespace
+
+std::vector<MeshFile> in_every_format(const TetMesh& mesh) {
+  return every_format(mesh);
+}
+std::vector<MeshFile> in_every_format(const HexMesh& mesh) {
+  return every_format(mesh);
+}
+std::vector<MeshFile> in_every_format(const QuadraticTetMesh& mesh) {
+  return every_format(mesh);
 }
 
 std::filesystem::path test_folder() {

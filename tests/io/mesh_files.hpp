@@ -2,7 +2,7 @@
 /// \file Writes meshes in every format that Supple reads, each straight from its specification and sharing no
 /// code with the readers.
 
-#include <physics/tet_mesh.hpp>
+#include <physics/cell_mesh.hpp>
 
 #include <filesystem>
 #include <ostream>
@@ -23,8 +23,11 @@ inline void PrintTo(const MeshFile& file, std::ostream* out) {
   *out << file.format;
 }
 
-/// The mesh in every format; coordinates keep every bit.
+/// The mesh in every format that has such cells; coordinates keep every bit. Where a format leaves the order of mid-edge
+/// nodes open, they come in one of their own.
 std::vector<MeshFile> in_every_format(const TetMesh& mesh);
+std::vector<MeshFile> in_every_format(const HexMesh& mesh);
+std::vector<MeshFile> in_every_format(const QuadraticTetMesh& mesh);
 
 /// A folder for the files of the running test, its own even when tests run side by side.
 std::filesystem::path test_folder();

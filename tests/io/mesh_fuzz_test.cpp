@@ -14,11 +14,13 @@
 namespace supple::test {
 namespace {
 
-TetMesh small_mesh() {
-  TetMesh mesh = perturbed(builtin_mesh("bar:2x1x1"), 0.05, 2);
-  for (Index e = 0; e < mesh.num_tets(); ++e) mesh.region.push_back(1 + static_cast<int>(e) / 6);
+/// In every format. \param spec  a built-in mesh.
+template <typename Mesh>
+std::vector<MeshFile> small_mesh(const char* spec) {
+  Mesh mesh = perturbed(std::get<Mesh>(builtin_solid_mesh(spec)), 0.02, 2);
+  for (Index e = 0; e < num_cells(mesh); ++e) mesh.region.push_back(2 * e < num_cells(mesh) ? 1 : 2);
   mesh.region_names = {{1, "left"}, {2, "right"}};
-  return mesh;
+  return in_every_format(mesh);
 }
 
 class DamagedFile : public testing::TestWithParam<MeshFile> {};
@@ -37,10 +39,14 @@ TEST_P(DamagedFile, GivesASoundMeshOrAnInputError) {
     forget_requests();
     try {
       MeshNotes notes;
-      const TetMesh mesh = read_tet_mesh(path, &notes);
-      EXPECT_NO_THROW(check_mesh(mesh)) << "file " << k;
-      EXPECT_EQ(static_cast<Index>(notes.numbers.node.size()), mesh.num_nodes());
-      EXPECT_EQ(static_cast<Index>(notes.numbers.tet.size()), mesh.num_tets());
+      const SolidMesh any = read_solid_mesh(path, &notes);
+      std::visit(
+          [&](const auto& mesh) {
+            EXPECT_NO_THROW(check_mesh(mesh)) << "file " << k;
+            EXPECT_EQ(static_cast<Index>(notes.numbers.node.size()), mesh.num_nodes());
+            EXPECT_EQ(static_cast<Index>(notes.numbers.cell.size()), num_cells(mesh));
+          },
+          any);
     } catch (const InputError&) {
       ++num_refused;
     } catch (const std::exception& error) {
@@ -53,8 +59,11 @@ TEST_P(DamagedFile, GivesASoundMeshOrAnInputError) {
   EXPECT_LT(num_refused, num_files);      // and not only at the door
 }
 
-INSTANTIATE_TEST_SUITE_P(Mesh, DamagedFile, testing::ValuesIn(in_every_format(small_mesh())),
-                         [](const auto& test) { return test.param.format; });
+constexpr auto format_of = [](const auto& test) { return test.param.format; };
+INSTANTIATE_TEST_SUITE_P(Mesh, DamagedFile, testing::ValuesIn(small_mesh<TetMesh>("bar:2x1x1")), format_of);
+INSTANTIATE_TEST_SUITE_P(HexMesh, DamagedFile, testing::ValuesIn(small_mesh<HexMesh>("hexbox:3x2x2")), format_of);
+INSTANTIATE_TEST_SUITE_P(QuadraticTetMesh, DamagedFile,
+                         testing::ValuesIn(small_mesh<QuadraticTetMesh>("tet10:bar:2x1x1")), format_of);
 
 }  // namespace
 }  // namespace supple::test

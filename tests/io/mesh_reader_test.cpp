@@ -51,7 +51,7 @@ TEST_P(EveryFormat, KeepsEveryBitAndTheRegions) {
     EXPECT_EQ(mesh.region_names, expected.region_names);
   }
   EXPECT_EQ(notes.numbers.node.size(), 27u);
-  EXPECT_EQ(notes.numbers.tet.size(), 48u);
+  EXPECT_EQ(notes.numbers.cell.size(), 48u);
   if (GetParam().format == "vega")
     EXPECT_THAT(notes.warnings, ElementsAre(HasSubstr("material rubber")));
   else
@@ -102,7 +102,7 @@ TEST(ReadTetMesh, KeepsTheNumbersOfTheFileWhenNodesAreDropped) {
                           test_folder() / "numbers.msh"),
                     &notes);
   EXPECT_THAT(notes.numbers.node, ElementsAre(40, 30, 20, 10));
-  EXPECT_THAT(notes.numbers.tet, ElementsAre(77));
+  EXPECT_THAT(notes.numbers.cell, ElementsAre(77));
   EXPECT_THAT(notes.warnings, ElementsAre("2 nodes belong to no tet: dropped"));
   EXPECT_THAT(mesh.region, IsEmpty());
   EXPECT_NEAR(tet_volume(mesh, 0), 1.0 / 6, 1e-15);
@@ -119,7 +119,7 @@ TEST(ReadTetMesh, ReadsSeveralPiecesOfAVtuAsOneMesh) {
   EXPECT_EQ(mesh.num_nodes(), 54);
   EXPECT_EQ(mesh.num_tets(), 96);
   EXPECT_EQ(mesh.region.size(), 96u);
-  EXPECT_EQ(notes.numbers.tet.back(), 95);
+  EXPECT_EQ(notes.numbers.cell.back(), 95);
   EXPECT_THAT(notes.warnings, ElementsAre("27 nodes lie where another node is: not merged",
                                           "2 components that are not connected"));
 }
@@ -166,7 +166,7 @@ TEST(ReadTetMesh, NamesFileAndLineOfWhatItCannotRead) {
   EXPECT_THAT(refusal(head + "Tetrahedra\n-1\n", "a.mesh"), HasSubstr("number of tetrahedra is negative"));
   EXPECT_THAT(refusal(head, "a.mesh"), HasSubstr("a.mesh: holds no tetrahedra"));
   EXPECT_THAT(refusal(head + "Tetrahedra\n1\n1 2 3 3 0\n", "a.mesh"), HasSubstr("tet 1 names node 3 twice"));
-  EXPECT_THAT(refusal(head + "Hexahedra\n1\n1 2 3 4 1 2 3 4 0\n", "a.mesh"), HasSubstr("holds 1 Hexahedra"));
+  EXPECT_THAT(refusal(head + "Hexahedra\n1\n1 2 3 4 1 2 3 4 0\n", "a.mesh"), HasSubstr("holds 1 hexahedron; only tetrahedra"));
 }
 
 TEST(ReadTetMesh, NamesFormatsThatItDoesNotRead) {

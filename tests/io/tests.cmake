@@ -7,7 +7,7 @@ supple_test(io_output LABEL unit LINKS supple::io
 supple_test(io_meshes LABEL unit LINKS supple::io ZLIB::ZLIB
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/mesh_awkward_test.cpp ${CMAKE_CURRENT_LIST_DIR}/mesh_builtin_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/mesh_files.cpp ${CMAKE_CURRENT_LIST_DIR}/mesh_node_sets_test.cpp
-          ${CMAKE_CURRENT_LIST_DIR}/mesh_reader_test.cpp)
+          ${CMAKE_CURRENT_LIST_DIR}/mesh_reader_test.cpp ${CMAKE_CURRENT_LIST_DIR}/solid_mesh_reader_test.cpp)
 supple_test(io_surfaces LABEL unit LINKS supple::io ZLIB::ZLIB
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/mesh_files.cpp ${CMAKE_CURRENT_LIST_DIR}/surface_awkward_test.cpp
           ${CMAKE_CURRENT_LIST_DIR}/surface_builtin_test.cpp ${CMAKE_CURRENT_LIST_DIR}/surface_files.cpp

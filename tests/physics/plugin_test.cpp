@@ -103,16 +103,16 @@ TEST(MaterialLaws, GiveTheModelsOfTheirTemplates) {
   EXPECT_EQ(solid.parameters.cols(), 2);
   solid.parameters.conservativeResize(2, Eigen::NoChange);
   solid.parameters.row(1) = 3 * solid.parameters.row(0);
-  for (Index e = 0; e < mesh.num_tets(); ++e) solid.material_of_tet.push_back(static_cast<std::int32_t>(e % 2));
-  const auto model = material_law("neo-hookean").tets(mesh, solid.parameters, solid.material_of_tet);
+  for (Index e = 0; e < mesh.num_tets(); ++e) solid.material_of_cell.push_back(static_cast<std::int32_t>(e % 2));
+  const auto model = material_law("neo-hookean").tets(mesh, solid.parameters, solid.material_of_cell);
   EXPECT_TRUE(model->has_jacobian());
   EXPECT_EQ(model->rest_positions(), mesh.nodes);
   Local<12> u;
   for (int k = 0; k < 12; ++k) u[k] = 0.002 * ((5 * k) % 7 - 3);
   EXPECT_THROW(material_law("stvk").tets(mesh, RowMatrix::Ones(1, 3), {}), std::invalid_argument);
   EXPECT_THROW(material_law("stvk").tets(mesh, RowMatrix::Ones(2, 2), {}), std::invalid_argument);
-  solid.material_of_tet[0] = 2;
-  EXPECT_THROW(material_law("stvk").tets(mesh, RowMatrix::Ones(2, 2), solid.material_of_tet), std::invalid_argument);
+  solid.material_of_cell[0] = 2;
+  EXPECT_THROW(material_law("stvk").tets(mesh, RowMatrix::Ones(2, 2), solid.material_of_cell), std::invalid_argument);
   EXPECT_GT(model->energy(1, u), model->energy(0, u));
 }
 

@@ -9,6 +9,7 @@ supple_test(shells LABEL unit LINKS supple::physics
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/discrete_shell_test.cpp ${CMAKE_CURRENT_LIST_DIR}/triangle_mesh_test.cpp)
 supple_test(elements LABEL unit LINKS supple::physics
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/elements_test.cpp ${CMAKE_CURRENT_LIST_DIR}/solid_conformance_test.cpp)
+supple_test(cell_mesh LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/cell_mesh_test.cpp LINKS supple::physics)
 supple_test(rods LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/rods_test.cpp LINKS supple::physics)
 supple_test(composite_model LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/composite_model_test.cpp LINKS supple::reduction)
 

@@ -184,7 +184,7 @@ TEST(CheckMesh, NamesTheFirstFault) {
   mesh = single_tet();
   mesh.nodes(2, 1) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(message(mesh), HasSubstr("node 2 has a coordinate that is not finite"));
-  EXPECT_THAT(message(mesh, {.node = {11, 12, 13, 14}, .tet = {}}), HasSubstr("node 13"));
+  EXPECT_THAT(message(mesh, {.node = {11, 12, 13, 14}, .cell = {}}), HasSubstr("node 13"));
   mesh = single_tet();
   mesh.nodes(3, 2) = 0;
   EXPECT_THAT(message(mesh), HasSubstr("zero volume"));

@@ -1,6 +1,7 @@
 #include <core/check.hpp>
 #include <core/output_file.hpp>
 #include <core/parallel.hpp>
+#include <core/tensor_file.hpp>
 #include <reduction/reduce.hpp>
 #include <tests/support/bars.hpp>
 #include <testing/near.hpp>
@@ -32,6 +33,14 @@ ReduceOptions quick(Index points = 40) {
   options.held_out_poses = 16;
   options.points = points;
   return options;
+}
+
+/// Nodes with x below a bound [m].
+std::vector<Index> select_below(const Points& nodes, double bound) {
+  std::vector<Index> selected;
+  for (Index v = 0; v < nodes.rows(); ++v)
+    if (nodes(v, 0) < bound) selected.push_back(v);
+  return selected;
 }
 
 const RowMatrix& fields(const ReducedModel& model) {
@@ -179,8 +188,8 @@ TEST(Reduce, HandlesTwoMaterials) {
   solid.parameters.row(1) = 100 * solid.parameters.row(0);
   solid.density = Vector::Constant(solid.mesh.num_tets(), 1000);
   for (Index e = 0; e < solid.mesh.num_tets(); ++e) {
-    solid.material_of_tet.push_back(e % 72 < 36);  // stiff and soft thirds
-    if (solid.material_of_tet.back()) solid.density[e] = 3000;
+    solid.material_of_cell.push_back(e % 72 < 36);  // stiff and soft thirds
+    if (solid.material_of_cell.back()) solid.density[e] = 3000;
   }
   const Reduced reduced(solid, quick());
   EXPECT_LT(reduced.report.training_error, 0.3);
@@ -272,8 +281,8 @@ TEST_F(ModelFile, GivesBackTheSameBits) {
     Solid solid = bar_solid();
     solid.parameters.conservativeResize(2, 2);
     solid.parameters.row(1) = 3 * solid.parameters.row(0);
-    solid.material_of_tet.assign(144, 1);
-    solid.material_of_tet[7] = 0;
+    solid.material_of_cell.assign(144, 1);
+    solid.material_of_cell[7] = 0;
     solid.mesh.region.assign(144, 4);
     solid.mesh.region_names[4] = "trunk – β";
     solid.damping = {0.1, 1e-3};
@@ -291,7 +300,7 @@ TEST_F(ModelFile, GivesBackTheSameBits) {
     EXPECT_EQ(std::get<Solid>(loaded.body).mesh.region_names, solid.mesh.region_names);
     EXPECT_EQ(std::get<Solid>(loaded.body).law, solid.law);
     EXPECT_TRUE(is_same(std::get<Solid>(loaded.body).parameters, solid.parameters));
-    EXPECT_EQ(std::get<Solid>(loaded.body).material_of_tet, solid.material_of_tet);
+    EXPECT_EQ(std::get<Solid>(loaded.body).material_of_cell, solid.material_of_cell);
     EXPECT_TRUE(is_same(std::get<Solid>(loaded.body).density, solid.density));
     EXPECT_EQ(std::get<Solid>(loaded.body).fixed_nodes, solid.fixed_nodes);
     EXPECT_EQ(std::get<Solid>(loaded.body).damping.alpha, 0.1);
@@ -383,6 +392,53 @@ TEST(Reduce, ReducesAShellAndKeepsIt) {
     return with_reduced_system(some, [&](const auto& system) { return system.force(q); });
   };
   EXPECT_TRUE(is_same(force(loaded), force(model)));
+}
+
+/// Reduced, kept and loaded again, an object of other cells has the same forces, to the bit.
+template <typename Mesh>
+void expect_kept(const Mesh& mesh, const char* array) {
+  auto solid = isotropic_solid(mesh, {.young = 1e5, .poisson = 0.35}, select_below(mesh.nodes, 0.02), "neo-hookean", 900);
+  solid.damping = {0.1, 1e-3};
+  solid.mesh.region.assign(num_cells(mesh), 2);
+  solid.mesh.region_names[2] = "all";
+  solid.parameters.conservativeResize(2, Eigen::NoChange);
+  solid.parameters.row(1) = 3 * solid.parameters.row(0);
+  for (Index e = 0; e < num_cells(mesh); ++e) solid.material_of_cell.push_back(static_cast<std::int32_t>(e % 2));
+  for (const SolidComponent component : {SolidComponent::Element, SolidComponent::GaussPoint}) {
+    SCOPED_TRACE(static_cast<int>(component));
+    solid.component = component;
+    ReduceReport report;
+    const ReducedModel model = reduce(solid, quick(40), &report);
+    using Element = ElementOf<Mesh>;
+    const Index per_cell = component == SolidComponent::Element ? 1 : static_cast<Index>(Element::gauss_points.size());
+    EXPECT_EQ(report.components, per_cell * num_cells(mesh));
+    EXPECT_LT(report.training_error, 0.4);
+    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "supple_cells.supple";
+    save_model(path, model);
+    EXPECT_TRUE(TensorFile(path).contains(array));
+    const ReducedModel loaded = load_model(path);
+    const auto& kept = std::get<SolidOf<Mesh>>(loaded.body);
+    EXPECT_EQ(kept.mesh.cells, mesh.cells);
+    EXPECT_EQ(kept.mesh.region, solid.mesh.region);
+    EXPECT_EQ(kept.mesh.region_names, solid.mesh.region_names);
+    EXPECT_EQ(kept.material_of_cell, solid.material_of_cell);
+    EXPECT_EQ(kept.component, component);
+    const Vector q = random_vector(model.dim(), 1e-2, 3);
+    const auto force = [&](const ReducedModel& some) {
+      return with_reduced_system(some, [&](const auto& system) { return system.force(q); });
+    };
+    EXPECT_TRUE(is_same(force(loaded), force(model)));
+    const std::string bytes = read_file(path);
+    save_model(path, loaded);
+    EXPECT_EQ(read_file(path), bytes);
+  }
+}
+
+TEST(Reduce, ReducesHexahedraAndKeepsThem) {
+  expect_kept(perturbed(hex_box(6, 2, 2, {0.6, 0.2, 0.2}), 0.005, 3), "mesh.hexahedra");
+}
+TEST(Reduce, ReducesQuadraticTetsAndKeepsThem) {
+  expect_kept(quadratic_mesh(kuhn_box(4, 1, 1, 0.1)), "mesh.quadratic_tets");
 }
 
 TEST(Reduce, TakesAsFewComponentsAsATargetErrorNeeds) {
