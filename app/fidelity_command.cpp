@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace supple {
@@ -30,7 +31,8 @@ struct Shape {
   double construction_seconds = 0, solve_seconds = 0;
   Index solves = 0, missed = 0;
   std::string led_by;         ///< of the full space: the subspace from whose shape it was found
-  double energy_of_full = 0;  ///< of a subspace: of the shape that the full space finds from its shape
+  /// of a subspace: of the shape that the full space finds from its shape; NaN if it finds none
+  double energy_of_full = std::numeric_limits<double>::quiet_NaN();
 
   double energy() const { return elastic + control; }
 };
@@ -162,12 +164,17 @@ void FidelityCommand::run() const {
       shape.name = "full";
       shape.dimension = system->dim();
       shape.led_by = shapes[k].name;
-      solve_path(
-          *system, rest, handles, last, system->restrict(shapes[k].displacement), solver,
-          [&](VectorIn u) -> Vector { return system->expand(u); }, progress, shape);
+      try {
+        solve_path(
+            *system, rest, handles, last, system->restrict(shapes[k].displacement), solver,
+            [&](VectorIn u) -> Vector { return system->expand(u); }, progress, shape);
+      } catch (const SolverError&) {
+        if (k + 1 == shapes.size() && shapes[0].led_by.empty()) throw;
+        continue;  // a shape from which nothing can be found, such as one with collapsed elements
+      }
       shapes[k].energy_of_full = shape.energy();
       shape.solve_seconds += shapes[0].solve_seconds;  // of all starts
-      if (k == 1 || shape.energy() < shapes[0].energy())
+      if (shapes[0].led_by.empty() || shape.energy() < shapes[0].energy())
         shapes[0] = std::move(shape);
       else
         shapes[0].solve_seconds = shape.solve_seconds;
@@ -196,6 +203,7 @@ void FidelityCommand::run() const {
                                 {"elastic_energy", shape.elastic},
                                 {"control_energy", shape.control},
                                 {"missed_solves", shape.missed},
+                                {"led_by", shape.led_by},
                                 {"energy_of_full_from_here", shape.energy_of_full},
                                 {"construction_seconds", shape.construction_seconds},
                                 {"solve_seconds", shape.solve_seconds}});
