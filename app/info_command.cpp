@@ -130,7 +130,8 @@ Json mesh_json(const TriangleMesh& mesh, Rows& rows) {
 
 /// One row a material: the parameters of the law, of a shell k_B [J], k_L and k_A [N/m].
 RowMatrix material_parameters(const Body& body) {
-  if (!std::holds_alternative<Shell>(body)) return visit_solid(body, [](const auto& solid) { return solid.parameters; });
+  if (!std::holds_alternative<Shell>(body))
+    return visit_solid(body, [](const auto& solid) { return solid.parameters; });
   const std::vector<ShellMaterial>& materials = std::get<Shell>(body).materials;
   RowMatrix rows(static_cast<Index>(materials.size()), 3);
   for (Index k = 0; k < rows.rows(); ++k) rows.row(k) << materials[k].bending, materials[k].stretch, materials[k].area;

@@ -62,7 +62,9 @@ std::string material_help() {
 /// The object and the method of training, for all commands that pose a fitting problem.
 void add_problem(CLI::App& command, ProblemOptions& c) {
   command
-      .add_option("MESH", c.mesh, "Tets or hexahedra (.msh .mesh .node .ele .veg .vtk .vtu), a surface (.obj .off .ply .stl), or a built-in, see below")
+      .add_option("MESH", c.mesh,
+                  "Tets or hexahedra (.msh .mesh .node .ele .veg .vtk .vtu), a surface (.obj .off .ply .stl), or a "
+                  "built-in, see below")
       ->required();
   add_plugins(command);
   const auto object = "Object";
@@ -148,7 +150,9 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
   command.add_option("--norm", c.norm, "Measure of the fitted forces [stiffness; paper: mass]")
       ->check(CLI::IsMember({"mass", "stiffness"}))
       ->group(method);
-  command.add_option("--inverted", c.inverted, "Poses with inverted cells [keep; shrink for laws that are undefined there]")
+  command
+      .add_option("--inverted", c.inverted,
+                  "Poses with inverted cells [keep; shrink for laws that are undefined there]")
       ->check(CLI::IsMember({"keep", "shrink", "redraw"}))
       ->group(method);
   command
@@ -179,7 +183,9 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
       ->group(files);
 
   const auto method = "Method";
-  reduce.add_option("--points", c.points, "Largest number of components that stand for all [150; 1000 with --target-error]")
+  reduce
+      .add_option("--points", c.points,
+                  "Largest number of components that stand for all [150; 1000 with --target-error]")
       ->type_name("S")
       ->group(method);
   reduce.add_option("--target-error", c.target_error, "Take as few components as reach this training error")

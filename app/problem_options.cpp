@@ -158,14 +158,16 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
       throw InputError("--thickness is for surfaces; the mesh has " + std::string(cell_name(Body(SolidOf<Mesh>{}))));
     if (gauss_points) {
       if constexpr (std::same_as<Mesh, TetMesh>)
-        throw InputError("--components gauss-points is for hexahedra and quadratic tets; a linear tet has one Gauss point");
+        throw InputError(
+            "--components gauss-points is for hexahedra and quadratic tets; a linear tet has one Gauss point");
       solid.component = SolidComponent::GaussPoint;
     }
     set_materials(problem, solid);
     return solid;
   };
   const auto shell_body = [&](const TriangleMesh& surface) -> Body {
-    if (gauss_points) throw InputError("--components gauss-points is for solids; the components of a surface are flaps");
+    if (gauss_points)
+      throw InputError("--components gauss-points is for solids; the components of a surface are flaps");
     if (problem.law != "stvk")
       throw InputError("--material " + problem.law + " is for solids; a surface is a discrete shell");
     if (problem.materials)

@@ -9,7 +9,8 @@
 
 namespace supple {
 
-/// The boundary of a solid, its faces cut into triangles, or a shell itself: triangles over `nodes`, which are indices into the mesh.
+/// The boundary of a solid, its faces cut into triangles, or a shell itself: triangles over `nodes`, which are indices
+/// into the mesh.
 struct Surface {
   std::vector<Triangle> triangles;
   std::vector<Index> nodes;

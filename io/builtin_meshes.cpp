@@ -130,9 +130,8 @@ HexMesh hexbox(const BuiltinSpec& spec) {
   const std::vector<Index> cells =
       spec.numbers(3, 'x', "hexbox:NXxNYxNZ with numbers of cells ≥ 1, such as hexbox:40x10x10");
   spec.expect_size(product(cells));
-  const auto longest = static_cast<double>(*std::max_element(cells.begin(), cells.end()));
-  return hex_box(cells[0], cells[1], cells[2],
-                 Point(static_cast<double>(cells[0]), static_cast<double>(cells[1]), static_cast<double>(cells[2])) / longest);
+  const Point size = Eigen::Map<const Eigen::Matrix<Index, 3, 1>>(cells.data()).cast<double>();
+  return hex_box(cells[0], cells[1], cells[2], size / size.maxCoeff());
 }
 
 }  // namespace

@@ -14,8 +14,8 @@ struct FileMesh {
   std::string format;
   std::vector<Point> nodes;
   std::vector<Tet> tets;                         ///< the corners of tets of any order
-  std::vector<std::array<Index, 6>> mid_edges;  ///< of the tets of second order, in turn; nodes as QuadraticTet has them
-  std::vector<std::array<Index, 8>> hexahedra;  ///< nodes as TrilinearHex has them
+  std::vector<std::array<Index, 6>> mid_edges;  ///< of the tets of second order, in turn; as QuadraticTet has them
+  std::vector<std::array<Index, 8>> hexahedra;  ///< as TrilinearHex has them
   std::vector<int> region;                      ///< one a tet or hexahedron, in order of the file, or empty
   std::map<int, std::string> region_names;
   MeshNumbers numbers;
@@ -32,8 +32,8 @@ struct FileMesh {
   void add_hexahedron(std::span<const Index> cell);
 };
 
-/// Puts the mid-edge nodes in the order of QuadraticTet where a format leaves theirs open: for all tets the one that brings
-/// each next to the middle of its edge. \throws InputError if there is none.
+/// Puts the mid-edge nodes in the order of QuadraticTet where a format leaves theirs open: for all tets the one that
+/// brings each next to the middle of its edge. \throws InputError if there is none.
 void order_mid_edges(FileMesh& mesh, const Cursor& in);
 
 void read_gmsh(Cursor& in, FileMesh& mesh);

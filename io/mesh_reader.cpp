@@ -81,7 +81,8 @@ FileMesh read_any(const std::filesystem::path& path) {
 enum class Kinds { Tets, All };
 
 void refuse_other_solids(const FileMesh& file, Kinds wanted, const std::string& name) {
-  const auto num_tets = static_cast<Index>(file.tets.size()), num_hexahedra = static_cast<Index>(file.hexahedra.size());
+  const auto num_tets = static_cast<Index>(file.tets.size()),
+             num_hexahedra = static_cast<Index>(file.hexahedra.size());
   std::string kinds;
   const auto add = [&](const std::string& kind) { kinds += (kinds.empty() ? "" : ", ") + kind; };
   for (const auto& [kind, count] : file.other_solid) add(std::to_string(count) + " " + kind);
@@ -134,9 +135,9 @@ void warn_of_surprises(const Mesh& mesh, const MeshNumbers& numbers, std::vector
     constexpr bool is_hex = std::same_as<Mesh, HexMesh>;
     std::array<char, 32> shown;
     std::snprintf(shown.data(), shown.size(), "%.2g", worst);
-    warnings.push_back(std::string(is_hex ? "nearly flat hexahedra: the worst, hex " : "nearly flat tets: the worst, tet ") +
-                       std::to_string(numbers.cell[at]) + (is_hex ? ", has scaled Jacobian " : ", has radius ratio ") +
-                       shown.data());
+    warnings.push_back(
+        std::string(is_hex ? "nearly flat hexahedra: the worst, hex " : "nearly flat tets: the worst, tet ") +
+        std::to_string(numbers.cell[at]) + (is_hex ? ", has scaled Jacobian " : ", has radius ratio ") + shown.data());
   }
 }
 
@@ -172,9 +173,9 @@ Mesh finish(FileMesh& file, std::vector<std::array<Index, size>> cells, const st
       ++num_reversed;
     }
   if (num_reversed > 0)
-    file.warnings.push_back(num_reversed == 1 ? std::string("1 ") + cell_word<size> + " is reversed: its nodes were reordered"
-                                              : std::to_string(num_reversed) + " " + cell_words<size> +
-                                                    " are reversed: their nodes were reordered");
+    file.warnings.push_back(
+        plural(num_reversed, std::string(cell_word<size>) + " is", std::string(cell_words<size>) + " are") +
+        " reversed: nodes reordered in each");
   try {
     check_mesh(mesh, file.numbers);
   } catch (const std::invalid_argument& error) {

@@ -11,8 +11,8 @@ namespace supple {
 
 using SolidMesh = std::variant<TetMesh, HexMesh, QuadraticTetMesh>;
 
-/// Reads the cells of a file, all of one kind, and makes them fit for elasticity: tets, hexahedra of eight nodes, or tets of
-/// second order, with ten. Formats, known by their content:
+/// Reads the cells of a file, all of one kind, and makes them fit for elasticity: tets, hexahedra of eight nodes, or
+/// tets of second order, with ten. Formats, known by their content:
 ///   - Gmsh .msh 2.x and 4.1, ASCII and binary of either byte order; regions are the physical groups of
 ///     volumes, else the volume entities
 ///   - Medit .mesh, ASCII; regions are the references of the cells
@@ -22,11 +22,11 @@ using SolidMesh = std::variant<TetMesh, HexMesh, QuadraticTetMesh>;
 ///   - VTK: legacy .vtk, ASCII and binary; .vtu with inline or appended arrays (text, base64, raw; zlib);
 ///     regions are the first cell array called region, material, gmsh:physical, medit:ref, …
 ///
-/// `region` stays empty where a file marks no cell. Kept, with a warning: reversed cells (their nodes are reordered), nodes of
-/// no cell (dropped), the corners of tets of third or higher order, or of mixed orders, hinges, several components,
-/// unmerged nodes, cells of bad shape.
-/// \throws InputError with file, place and expectation: unreadable or truncated files; no cells, cells of several kinds or of
-///   others; whatever check_mesh refuses (tangled, flat or repeated cells, …).
+/// `region` stays empty where a file marks no cell. Kept, with a warning: reversed cells (their nodes are reordered),
+/// nodes of no cell (dropped), the corners of tets of third or higher order, or of mixed orders, hinges, several
+/// components, unmerged nodes, cells of bad shape.
+/// \throws InputError with file, place and expectation: unreadable or truncated files; no cells, cells of several kinds
+///   or of others; whatever check_mesh refuses (tangled, flat or repeated cells, …).
 /// \note A binary .msh of 92 000 tets takes about 50 ms, half of it for the checks. Warnings about hinges
 ///   and the like are only searched for if notes are wanted.
 SolidMesh read_solid_mesh(const std::filesystem::path& path, MeshNotes* notes = nullptr);

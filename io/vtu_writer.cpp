@@ -145,8 +145,8 @@ void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span
                const VtuFields& fields) {
   write_cells(path, nodes, hexahedra, fields);
 }
-void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const std::array<Index, 10>> quadratic_tets,
-               const VtuFields& fields) {
+void write_vtu(const std::filesystem::path& path, const Points& nodes,
+               std::span<const std::array<Index, 10>> quadratic_tets, const VtuFields& fields) {
   write_cells(path, nodes, quadratic_tets, fields);
 }
 void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const Triangle> triangles,

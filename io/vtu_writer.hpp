@@ -25,7 +25,8 @@ struct VtuFields {
   std::vector<VtuField> cell_data = {};
 };
 
-/// Writes an UnstructuredGrid of tetrahedra, hexahedra, quadratic tetrahedra or triangles, arrays in raw binary after the XML; positions in m.
+/// Writes an UnstructuredGrid of tetrahedra, hexahedra, quadratic tetrahedra or triangles, arrays in raw binary after the
+/// XML; positions in m.
 /// \throws std::invalid_argument if a field has not one row a node or cell, two fields of one kind have the
 /// same name or a cell reads a node that is not there; InputError if the file cannot be written.
 /// \see VTK File Formats, "XML File Formats", Kitware.
@@ -33,8 +34,8 @@ void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span
                const VtuFields& fields = {});
 void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const std::array<Index, 8>> hexahedra,
                const VtuFields& fields = {});
-void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const std::array<Index, 10>> quadratic_tets,
-               const VtuFields& fields = {});
+void write_vtu(const std::filesystem::path& path, const Points& nodes,
+               std::span<const std::array<Index, 10>> quadratic_tets, const VtuFields& fields = {});
 void write_vtu(const std::filesystem::path& path, const Points& nodes, std::span<const Triangle> triangles,
                const VtuFields& fields = {});
 
@@ -49,7 +50,8 @@ class VtuSeries {
   /// Writes one more frame.
   /// \throws std::invalid_argument if time [s] is not after the last one; as write_vtu.
   void add(double time, const Points& nodes, std::span<const Tet> tets, const VtuFields& fields = {});
-  void add(double time, const Points& nodes, std::span<const std::array<Index, 8>> hexahedra, const VtuFields& fields = {});
+  void add(double time, const Points& nodes, std::span<const std::array<Index, 8>> hexahedra,
+           const VtuFields& fields = {});
   void add(double time, const Points& nodes, std::span<const std::array<Index, 10>> quadratic_tets,
            const VtuFields& fields = {});
   void add(double time, const Points& nodes, std::span<const Triangle> triangles,

@@ -14,8 +14,8 @@ namespace supple {
 
 namespace {
 
-/// Faces of a cell: corners counter-clockwise as seen from outside, then the nodes amid their edges; and how a face is cut
-/// into triangles.
+/// Faces of a cell: corners counter-clockwise as seen from outside, then the nodes amid their edges; and how a face is
+/// cut into triangles.
 template <typename Element>
 struct Faces;
 template <>
@@ -92,7 +92,8 @@ class CellFaces {
         same.assign(faces.begin(), faces.end());
         std::ranges::stable_sort(same, {}, [&](Index face) { return largest[face]; });
         for (auto begin = same.begin(); begin != same.end();) {
-          const auto end = std::find_if(begin, same.end(), [&](Index face) { return largest[face] != largest[*begin]; });
+          const auto end =
+              std::find_if(begin, same.end(), [&](Index face) { return largest[face] != largest[*begin]; });
           visit(std::span<const Index>(begin, end));
           begin = end;
         }
@@ -108,7 +109,8 @@ class CellFaces {
 template <typename Element>
 ShapeGradients<Element> relative_positions(const CellMesh<Element::num_nodes>& mesh, Index e) {
   ShapeGradients<Element> X;
-  for (int a = 0; a < Element::num_nodes; ++a) X.row(a) = mesh.nodes.row(mesh.cells[e][a]) - mesh.nodes.row(mesh.cells[e][0]);
+  const auto& cell = mesh.cells[e];
+  for (int a = 0; a < Element::num_nodes; ++a) X.row(a) = mesh.nodes.row(cell[a]) - mesh.nodes.row(cell[0]);
   return X;
 }
 
@@ -148,7 +150,8 @@ void check_shape(const CellMesh<Element::num_nodes>& mesh, Index e, const CellNa
       throw std::invalid_argument("the volume of " + names.cell(e) + " is beyond the range of numbers");
     if (det > 16 * std::numeric_limits<double>::epsilon() * size) return;
     const double whole = volume<Element>(mesh, e);
-    throw std::invalid_argument(names.cell(e) + (whole > 0 ? " is tangled: det J is " : " is flat or reversed: det J is ") +
+    throw std::invalid_argument(names.cell(e) +
+                                (whole > 0 ? " is tangled: det J is " : " is flat or reversed: det J is ") +
                                 std::to_string(det) + " m^3 at " + place() + ", expected > 0");
   };
   const auto check_rule = [&](std::span<const QuadraturePoint> rule, const char* name) {
@@ -190,9 +193,11 @@ void check_cells(const CellMesh<Element::num_nodes>& mesh, const MeshNumbers& nu
     const auto one = faces.cycle(same[0]), other = faces.cycle(same[1]);
     const auto nodes_of = [](const auto& nodes) { return std::set<Index>(nodes.begin(), nodes.end()); };
     const bool is_pair = same.size() == 2 && one.corners == other.corners && one.turned != other.turned;
-    if (is_pair && (Element::num_nodes == 8 || nodes_of(faces.nodes(same[0])) == nodes_of(faces.nodes(same[1])))) return;
+    if (is_pair && (Element::num_nodes == 8 || nodes_of(faces.nodes(same[0])) == nodes_of(faces.nodes(same[1]))))
+      return;
     std::string corners;
-    for (const Index v : faces.corners(same[0])) corners += (corners.empty() ? "" : ", ") + names.number(numbers.node, v);
+    for (const Index v : faces.corners(same[0]))
+      corners += (corners.empty() ? "" : ", ") + names.number(numbers.node, v);
     const Index first = faces.cell(same[0]), second = faces.cell(same[1]);
     const std::string pair = names.cell(first) + " and " + names.cell(second), face = "face (" + corners + ")";
     if (is_pair)

@@ -6,7 +6,8 @@ namespace {
 
 template <typename Mesh>
 auto of_cells(const SolidOf<Mesh>& solid, const MaterialLaw::CellModel<Mesh>& make, const char* cells) {
-  require(static_cast<bool>(make), "the material law " + solid.law + " is an element of tets only, it has none of " + cells);
+  require(static_cast<bool>(make),
+          "the material law " + solid.law + " is an element of tets only, it has none of " + cells);
   return make(solid.mesh, solid.parameters, solid.material_of_cell, solid.component);
 }
 

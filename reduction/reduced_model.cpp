@@ -157,7 +157,8 @@ Shell read_shell(const ModelReader& in, Points nodes) {
 
 /// The object of whatever cells the file has.
 Body read_body(const ModelReader& in, Points nodes) {
-  constexpr std::array cells{arrays<TetMesh>.cells, arrays<HexMesh>.cells, arrays<QuadraticTetMesh>.cells, "mesh.triangles"};
+  constexpr std::array cells{arrays<TetMesh>.cells, arrays<HexMesh>.cells, arrays<QuadraticTetMesh>.cells,
+                             "mesh.triangles"};
   std::vector<const char*> present;
   for (const char* name : cells)
     if (in.file.contains(name)) present.push_back(name);

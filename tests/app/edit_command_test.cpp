@@ -65,17 +65,19 @@ TEST_F(EditCommandTest, RunsEveryCommandOnHexahedraAndQuadraticTets) {
   for (const std::string mesh : {"hexbox:8x2x2", "tet10:bar:4x1x1"}) {
     SCOPED_TRACE(mesh);
     const std::string kind = mesh.starts_with("hex") ? "hexahedra" : "quadratic_tets";
-    const Outcome made = supple({"reduce", mesh, "-o", "bar.supple", "--modes", "11", "--poses", "40", "--points", "80", "--held-out",
-                                 "0", "--components", "gauss-points"});
+    const Outcome made = supple({"reduce", mesh, "-o", "bar.supple", "--modes", "11", "--poses", "40", "--points", "80",
+                                 "--held-out", "0", "--components", "gauss-points"});
     ASSERT_EQ(made.exit_code, 0) << made.err;
     const json bent = report({"edit", "bar.supple", "--scene", "bend.json", "-o", "bent", "--frames", "cells"});
     EXPECT_EQ(bent["missed_solves"], 0);
     EXPECT_GT(read_png(folder / "bent/picture.png").width, 600);
     EXPECT_EQ(report({"info", "bent/series_000005.vtu"})[kind], mesh.starts_with("hex") ? 32 : 24);
-    const json full = report({"edit", "bar.supple", "--scene", "bend.json", "--full", "-o", "full", "--frames", "surface"});
+    const json full =
+        report({"edit", "bar.supple", "--scene", "bend.json", "--full", "-o", "full", "--frames", "surface"});
     EXPECT_EQ(full["missed_solves"], 0);
     EXPECT_LT(report({"compare", "bent", "full", "-o", "compared"})["position_error"]["relative"], 0.25);
-    EXPECT_GT(report({"simulate", "bar.supple", "--full", "--time", "0.05", "-o", "moved", "--frames", "tets"})["steps"], 0);
+    EXPECT_GT(
+        report({"simulate", "bar.supple", "--full", "--time", "0.05", "-o", "moved", "--frames", "tets"})["steps"], 0);
     EXPECT_TRUE(report({"info", "moved/series_000001.vtu"}).contains(kind));
     const json shapes = report({"fidelity", mesh, "--scene", "bend.json", "--modes", "11", "--subspaces", "extended"});
     EXPECT_NEAR(shapes["measure"].get<double>(), 1.0 / 16, 1e-12);

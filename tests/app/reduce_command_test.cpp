@@ -402,7 +402,8 @@ TEST_F(ReduceCommandTest, TakesHexahedraAndQuadraticTets) {
     EXPECT_LT(points["training_error"], 0.5);
     EXPECT_EQ(report({"info", "bar.supple"})["component"], "Gauss points");
     // the object is the same one
-    EXPECT_NEAR(points["eigenvalues"]["exact"][0].get<double>() / whole["eigenvalues"]["exact"][0].get<double>(), 1, 1e-6);
+    EXPECT_NEAR(points["eigenvalues"]["exact"][0].get<double>() / whole["eigenvalues"]["exact"][0].get<double>(), 1,
+                1e-6);
     EXPECT_GT(report({"simulate", "bar.supple", "--time", "0.05"})["steps"], 0);
     EXPECT_EQ(report({"info", job.mesh})[job.kind], job.cells);
     ASSERT_EQ(supple({"mesh", job.mesh, "-o", "mesh.vtu"}).exit_code, 0);
@@ -419,11 +420,12 @@ TEST_F(ReduceCommandTest, TakesHexahedraAndQuadraticTets) {
 
 TEST_F(ReduceCommandTest, GivesRegionsOfHexahedraTheirOwnMaterials) {
   write("two.mesh",
-        "MeshVersionFormatted 2\nDimension 3\nVertices\n12\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n1 1 1 0\n"
+        "MeshVersionFormatted 2\nDimension 3\nVertices\n12\n0 0 0 0\n1 0 0 0\n1 1 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n1 1 "
+        "1 0\n"
         "0 1 1 0\n0 0 2 0\n1 0 2 0\n1 1 2 0\n0 1 2 0\nHexahedra\n2\n1 2 3 4 5 6 7 8 1\n5 6 7 8 9 10 11 12 2\nEnd\n");
   write("materials.json", R"({"law": "ogden", "regions": {"2": {"young": "1 MPa", "density": 500}}})");
-  const json made = report({"reduce", "two.mesh", "-o", "two.supple", "--fix-region", "1", "--modes", "2", "--poses", "10", "--points",
-                            "2", "--materials", "materials.json"});
+  const json made = report({"reduce", "two.mesh", "-o", "two.supple", "--fix-region", "1", "--modes", "2", "--poses",
+                            "10", "--points", "2", "--materials", "materials.json"});
   EXPECT_EQ(made["mesh"]["fixed_nodes"], 8);
   EXPECT_EQ(made["options"]["material"], "ogden");
   const HexSolid solid = std::get<HexSolid>(load_model(folder / "two.supple").body);
@@ -487,8 +489,9 @@ TEST_F(ReduceCommandTest, LoadsMaterialsOfOnesOwn) {
   EXPECT_GT(report({"simulate", "bar.supple", "--plugin", plugin, "--time", "0.1"})["steps"], 0);
   const json springs = report(small({"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets"}));
   EXPECT_LT(springs["training_error"], 0.5);
-  expect_refusal(cells("hexbox:6x2x2", {"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets"}),
-                 {"spring-tets", "hexahedra"});
+  expect_refusal(
+      cells("hexbox:6x2x2", {"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets"}),
+      {"spring-tets", "hexahedra"});
   EXPECT_LT(report(cells("hexbox:6x2x2", {"--plugin", plugin, "--material", "gent"}))["training_error"], 0.5);
   expect_refusal(small({"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets", "--parameter",
                         "modulus=-1"}),

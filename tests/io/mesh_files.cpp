@@ -172,8 +172,8 @@ std::string medit(const Mesh& mesh) {
   std::string s = "MeshVersionFormatted 2\n# a comment\nDimension 3\nVertices\n" +
                   std::to_string(mesh.num_nodes()) + "\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += xyz(mesh, v) + " 0\n";
-  s += "RequiredVertices\n2\n1\n2\nTriangles\n1\n1 2 3 9\n" + std::string(words_of<Mesh>.medit) + "\n" + std::to_string(num_cells(mesh)) +
-       "\n";
+  s += "RequiredVertices\n2\n1\n2\nTriangles\n1\n1 2 3 9\n" + std::string(words_of<Mesh>.medit) + "\n" +
+       std::to_string(num_cells(mesh)) + "\n";
   for (Index e = 0; e < num_cells(mesh); ++e)
     s += corners(in_some_order(cells_of(mesh)[e]), 1).substr(1) + " " + std::to_string(region(mesh, e)) + "\n";
   return s + "End\n";
@@ -191,8 +191,8 @@ template <typename Mesh>
 std::string tetgen_ele(const Mesh& mesh, Index first) {
   std::string s = std::to_string(num_cells(mesh)) + " " + std::to_string(cell_size<Mesh>) + " 1\n\n";
   for (Index e = 0; e < num_cells(mesh); ++e)
-    s += std::to_string(e + first) + corners(in_some_order(cells_of(mesh)[e]), first) + " " + std::to_string(region(mesh, e)) +
-         "\n";
+    s += std::to_string(e + first) + corners(in_some_order(cells_of(mesh)[e]), first) + " " +
+         std::to_string(region(mesh, e)) + "\n";
   return s;
 }
 
@@ -379,7 +379,8 @@ std::vector<MeshFile> every_format(const Mesh& mesh) {
                               {"vtu_ascii", ".vtu", vtu_ascii(mesh), ""}};
   if constexpr (cell_size<Mesh> != 8)
     for (const Index first : {0, 1})
-      files.push_back({"tetgen_from_" + std::to_string(first), ".node", tetgen_node(mesh, first), tetgen_ele(mesh, first)});
+      files.push_back(
+          {"tetgen_from_" + std::to_string(first), ".node", tetgen_node(mesh, first), tetgen_ele(mesh, first)});
   if constexpr (cell_size<Mesh> != 10) files.push_back({"vega", ".veg", vega(mesh), ""});
   const auto add = [&](const std::string& name, const VtuStyle& style) {
     files.push_back({name, ".vtu", VtuWriter(mesh, style).write(), ""});

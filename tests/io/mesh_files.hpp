@@ -23,8 +23,8 @@ inline void PrintTo(const MeshFile& file, std::ostream* out) {
   *out << file.format;
 }
 
-/// The mesh in every format that has such cells; coordinates keep every bit. Where a format leaves the order of mid-edge
-/// nodes open, they come in one of their own.
+/// The mesh in every format that has such cells; coordinates keep every bit. Where a format leaves the order of
+/// mid-edge nodes open, they come in one of their own.
 std::vector<MeshFile> in_every_format(const TetMesh& mesh);
 std::vector<MeshFile> in_every_format(const HexMesh& mesh);
 std::vector<MeshFile> in_every_format(const QuadraticTetMesh& mesh);

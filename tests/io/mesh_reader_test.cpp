@@ -166,7 +166,8 @@ TEST(ReadTetMesh, NamesFileAndLineOfWhatItCannotRead) {
   EXPECT_THAT(refusal(head + "Tetrahedra\n-1\n", "a.mesh"), HasSubstr("number of tetrahedra is negative"));
   EXPECT_THAT(refusal(head, "a.mesh"), HasSubstr("a.mesh: holds no tetrahedra"));
   EXPECT_THAT(refusal(head + "Tetrahedra\n1\n1 2 3 3 0\n", "a.mesh"), HasSubstr("tet 1 names node 3 twice"));
-  EXPECT_THAT(refusal(head + "Hexahedra\n1\n1 2 3 4 1 2 3 4 0\n", "a.mesh"), HasSubstr("holds 1 hexahedron; only tetrahedra"));
+  EXPECT_THAT(refusal(head + "Hexahedra\n1\n1 2 3 4 1 2 3 4 0\n", "a.mesh"),
+              HasSubstr("holds 1 hexahedron; only tetrahedra"));
 }
 
 TEST(ReadTetMesh, NamesFormatsThatItDoesNotRead) {

@@ -26,12 +26,8 @@ Mesh two_regions(const char* spec) {
   mesh.region_names = {{1, "soft"}, {2, "stiff"}};
   return mesh;
 }
-HexMesh hexahedra() {
-  return two_regions<HexMesh>("hexbox:3x2x2");
-}
-QuadraticTetMesh quadratic_tets() {
-  return two_regions<QuadraticTetMesh>("tet10:cube:2");
-}
+HexMesh hexahedra() { return two_regions<HexMesh>("hexbox:3x2x2"); }
+QuadraticTetMesh quadratic_tets() { return two_regions<QuadraticTetMesh>("tet10:cube:2"); }
 
 /// The message with which a file of these bytes is refused; empty if it is read.
 std::string refusal(const std::string& bytes, const std::string& name) {
@@ -133,10 +129,11 @@ TEST(ReadSolidMesh, ReordersReversedCells) {
   MeshNotes notes;
   write_vtu(test_folder() / "hexes.vtu", hexes.nodes, hexes.cells);
   EXPECT_EQ(std::get<HexMesh>(read_solid_mesh(test_folder() / "hexes.vtu", &notes)).cells, hexahedra().cells);
-  EXPECT_THAT(notes.warnings, ElementsAre("2 hexahedra are reversed: their nodes were reordered"));
+  EXPECT_THAT(notes.warnings, ElementsAre("2 hexahedra are reversed: nodes reordered in each"));
   write_vtu(test_folder() / "tets.vtu", tets.nodes, tets.cells);
-  EXPECT_EQ(std::get<QuadraticTetMesh>(read_solid_mesh(test_folder() / "tets.vtu", &notes)).cells, quadratic_tets().cells);
-  EXPECT_THAT(notes.warnings, ElementsAre("48 tets are reversed: their nodes were reordered"));
+  EXPECT_EQ(std::get<QuadraticTetMesh>(read_solid_mesh(test_folder() / "tets.vtu", &notes)).cells,
+            quadratic_tets().cells);
+  EXPECT_THAT(notes.warnings, ElementsAre("48 tets are reversed: nodes reordered in each"));
 }
 
 /// A Gmsh file of the unit cube's corners and the cells that are given.
@@ -147,17 +144,22 @@ std::string gmsh_cube(const std::string& elements, int count) {
 }
 
 TEST(ReadSolidMesh, RefusesOtherAndMixedCellsWithTheirCounts) {
-  const std::string hex = "1 5 0 10 11 12 13 14 15 16 17\n", tet = "2 4 0 10 11 13 14\n", prism = "3 6 0 10 11 12 14 15 16\n";
+  const std::string hex = "1 5 0 10 11 12 13 14 15 16 17\n", tet = "2 4 0 10 11 13 14\n",
+                    prism = "3 6 0 10 11 12 14 15 16\n";
   EXPECT_EQ(refusal(gmsh_cube(hex, 1), "hex.msh"), "");
-  EXPECT_THAT(refusal(gmsh_cube(hex + tet, 2), "mixed.msh"), HasSubstr("mixed.msh: holds 1 hexahedron and 1 tet; expected"));
+  EXPECT_THAT(refusal(gmsh_cube(hex + tet, 2), "mixed.msh"),
+              HasSubstr("mixed.msh: holds 1 hexahedron and 1 tet; expected"));
   EXPECT_THAT(refusal(gmsh_cube(hex + prism, 2), "mixed.msh"), HasSubstr("holds 1 prisms, 1 hexahedron; expected"));
   EXPECT_THAT(refusal(gmsh_cube("1 17 0 10 11 12 13 14 15 16 17 10 10 10 10 10 10 10 10 10 10 10 10\n", 1), "20.msh"),
               HasSubstr("holds 1 hexahedra of higher order"));
-  EXPECT_THAT(refusal(gmsh_cube("1 1 0 10 11\n", 1), "line.msh"), HasSubstr("holds no tetrahedra or hexahedra but 1 cell"));
+  EXPECT_THAT(refusal(gmsh_cube("1 1 0 10 11\n", 1), "line.msh"),
+              HasSubstr("holds no tetrahedra or hexahedra but 1 cell"));
 }
 
 TEST(ReadSolidMesh, NamesBadHexahedraByTheNumbersOfTheFile) {
-  const auto hexes = [](const std::string& elements, int count) { return refusal(gmsh_cube(elements, count), "bad.msh"); };
+  const auto hexes = [](const std::string& elements, int count) {
+    return refusal(gmsh_cube(elements, count), "bad.msh");
+  };
   EXPECT_THAT(hexes("7 5 0 10 11 12 13 14 15 16 16\n", 1), HasSubstr("hex 7 names node 16 twice"));
   EXPECT_THAT(hexes("7 5 0 10 11 12 13 14 15 17 16\n", 1),
               AllOf(HasSubstr("hex 7 is tangled: det J is"), HasSubstr("at its corner, node ")));

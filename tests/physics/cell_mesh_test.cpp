@@ -94,7 +94,8 @@ void expect_the_static_model(const Mesh& mesh) {
   for (Index e = 0; e < num_cells(mesh); ++e) solid.material_of_cell.push_back(static_cast<std::int32_t>(e % 2));
   const auto expect_same = [&](const auto& expected) {
     with_force_model(solid, [&](const auto& model) {
-      if constexpr (std::remove_cvref_t<decltype(*model)>::local_dofs == std::remove_cvref_t<decltype(expected)>::local_dofs) {
+      if constexpr (std::remove_cvref_t<decltype(*model)>::local_dofs ==
+                    std::remove_cvref_t<decltype(expected)>::local_dofs) {
         constexpr int dofs = std::remove_cvref_t<decltype(expected)>::local_dofs;
         ASSERT_EQ(model->num_components(), expected.num_components());
         EXPECT_TRUE(model->has_jacobian());
@@ -134,12 +135,13 @@ TEST(SolidOfCells, NamesLawsThatAreElementsOfTets) {
   add_material_law(own);
   const auto refused = [](const auto& mesh, const char* cells) {
     const auto solid = isotropic_solid(mesh, {.young = 1, .poisson = 0.3}, {}, "of-tets-only");
-    EXPECT_THAT([&] { (void)force_model(solid); },
-                testing::ThrowsMessage<std::invalid_argument>(testing::AllOf(HasSubstr("of-tets-only"), HasSubstr(cells))));
+    EXPECT_THAT([&] { (void)force_model(solid); }, testing::ThrowsMessage<std::invalid_argument>(
+                                                       testing::AllOf(HasSubstr("of-tets-only"), HasSubstr(cells))));
   };
   refused(hex_box(1, 1, 1, {1, 1, 1}), "hexahedra");
   refused(quadratic_mesh(kuhn_box(1, 1, 1, 1)), "quadratic tets");
-  EXPECT_NO_THROW((void)force_model(isotropic_solid(kuhn_box(1, 1, 1, 1), {.young = 1, .poisson = 0.3}, {}, "of-tets-only")));
+  EXPECT_NO_THROW(
+      (void)force_model(isotropic_solid(kuhn_box(1, 1, 1, 1), {.young = 1, .poisson = 0.3}, {}, "of-tets-only")));
 }
 
 }  // namespace

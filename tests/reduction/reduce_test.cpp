@@ -397,7 +397,8 @@ TEST(Reduce, ReducesAShellAndKeepsIt) {
 /// Reduced, kept and loaded again, an object of other cells has the same forces, to the bit.
 template <typename Mesh>
 void expect_kept(const Mesh& mesh, const char* array) {
-  auto solid = isotropic_solid(mesh, {.young = 1e5, .poisson = 0.35}, select_below(mesh.nodes, 0.02), "neo-hookean", 900);
+  auto solid =
+      isotropic_solid(mesh, {.young = 1e5, .poisson = 0.35}, select_below(mesh.nodes, 0.02), "neo-hookean", 900);
   solid.damping = {0.1, 1e-3};
   solid.mesh.region.assign(num_cells(mesh), 2);
   solid.mesh.region_names[2] = "all";
