@@ -31,8 +31,9 @@ struct Shape {
   double construction_seconds = 0, solve_seconds = 0;
   Index solves = 0, missed = 0;
   std::string led_by;         ///< of the full space: the subspace from whose shape it was found
-  /// of a subspace: of the shape that the full space finds from its shape; NaN if it finds none
-  double energy_of_full = std::numeric_limits<double>::quiet_NaN();
+  // of a subspace: the minimum that the full space finds from its shape; NaN and empty if it finds none
+  double own_energy = std::numeric_limits<double>::quiet_NaN();
+  Vector own_minimum;
 
   double energy() const { return elastic + control; }
 };
@@ -82,6 +83,13 @@ Distance distance(const Body& body, const Vector& a, const Vector& b) {
   const Vector mass = nodal_mass(body), difference = a - b;
   const double rms = std::sqrt(as_points(difference).rowwise().squaredNorm().dot(mass) / mass.sum());
   return {rms / bounding_box(node_positions(body)).diagonal(), rms / std::sqrt(measure(body))};
+}
+
+/// The minimum of the full energy to which the shape of a subspace leads; null if there is none.
+Json own_minimum(const Body& body, const Shape& shape) {
+  if (shape.own_minimum.size() == 0) return nullptr;
+  const Distance off = distance(body, shape.displacement, shape.own_minimum);
+  return {{"energy", shape.own_energy}, {"rms_over_diagonal", off.rms}, {"l2_over_measure", off.l2}};
 }
 
 void draw_shapes(const std::filesystem::path& path, const Body& body, const std::vector<Shape>& shapes) {
@@ -172,7 +180,8 @@ void FidelityCommand::run() const {
         if (k + 1 == shapes.size() && shapes[0].led_by.empty()) throw;
         continue;  // a shape from which nothing can be found, such as one with collapsed elements
       }
-      shapes[k].energy_of_full = shape.energy();
+      shapes[k].own_energy = shape.energy();
+      shapes[k].own_minimum = shape.displacement;
       shape.solve_seconds += shapes[0].solve_seconds;  // of all starts
       if (shapes[0].led_by.empty() || shape.energy() < shapes[0].energy())
         shapes[0] = std::move(shape);
@@ -187,8 +196,8 @@ void FidelityCommand::run() const {
   const Shape& full = shapes.front();
   std::string table = "| space | d | rms distance [% of the diagonal] | L² over " +
                       std::string(std::holds_alternative<Shell>(body) ? "area" : "volume") +
-                      " | elastic energy [J] | of handles [J] | built [s] | solved [s] |\n"
-                      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
+                      " | to its own minimum | elastic energy [J] | of handles [J] | built [s] | solved [s] |\n"
+                      "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
   Json report{{"command", "fidelity"}, {"version", SUPPLE_VERSION}, {"mesh", mesh}, {"scene", scene.string()}};
   report["diagonal"] = bounding_box(rest).diagonal();
   report["measure"] = measure(body);
@@ -204,11 +213,13 @@ void FidelityCommand::run() const {
                                 {"control_energy", shape.control},
                                 {"missed_solves", shape.missed},
                                 {"led_by", shape.led_by},
-                                {"energy_of_full_from_here", shape.energy_of_full},
+                                {"own_minimum", own_minimum(body, shape)},
                                 {"construction_seconds", shape.construction_seconds},
                                 {"solve_seconds", shape.solve_seconds}});
+    const std::string own =
+        shape.own_minimum.size() == 0 ? "–" : shown(distance(body, shape.displacement, shape.own_minimum).l2, 3);
     table += "| " + shape.name + " | " + std::to_string(shape.dimension) + " | " + shown(100 * off.rms, 3) + " | " +
-             shown(off.l2, 3) + " | " + shown(shape.elastic, 4) + " | " + shown(shape.control, 3) + " | " +
+             shown(off.l2, 3) + " | " + own + " | " + shown(shape.elastic, 4) + " | " + shown(shape.control, 3) + " | " +
              shown(shape.construction_seconds, 3) + " | " + shown(shape.solve_seconds, 3) + " |\n";
     if (shape.missed > 0)
       warn(shape.name + ": " + std::to_string(shape.missed) + " of " + std::to_string(shape.solves) +
