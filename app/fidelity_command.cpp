@@ -180,8 +180,10 @@ void FidelityCommand::run() const {
         if (k + 1 == shapes.size() && shapes[0].led_by.empty()) throw;
         continue;  // a shape from which nothing can be found, such as one with collapsed elements
       }
-      shapes[k].own_energy = shape.energy();
-      shapes[k].own_minimum = shape.displacement;
+      if (shape.missed == 0) {
+        shapes[k].own_energy = shape.energy();
+        shapes[k].own_minimum = shape.displacement;
+      }
       shape.solve_seconds += shapes[0].solve_seconds;  // of all starts
       if (shapes[0].led_by.empty() || shape.energy() < shapes[0].energy())
         shapes[0] = std::move(shape);

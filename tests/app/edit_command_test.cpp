@@ -166,10 +166,15 @@ TEST_F(EditCommandTest, ComparesSubspacesByTheirShapes) {
   EXPECT_LT(off(1), 0.5 * off(3));  // the paper's finding
   EXPECT_GE(report["shapes"][1]["elastic_energy"].get<double>() + report["shapes"][1]["control_energy"].get<double>(),
             (report["shapes"][0]["elastic_energy"].get<double>() + report["shapes"][0]["control_energy"].get<double>()) * (1 - 1e-6));
-  for (int k = 1; k < 5; ++k)  // the reference is the best minimum found
-    EXPECT_GE(report["shapes"][k]["own_minimum"]["energy"].get<double>(),
-              (report["shapes"][0]["elastic_energy"].get<double>() + report["shapes"][0]["control_energy"].get<double>()) *
-                  (1 - 1e-9));
+  EXPECT_TRUE(report["shapes"][0]["own_minimum"].is_null());
+  EXPECT_FALSE(report["shapes"][1]["own_minimum"].is_null());
+  const json& full = report["shapes"][0];
+  for (int k = 1; k < 5; ++k) {  // the reference is the best minimum found
+    const json& own = report["shapes"][k]["own_minimum"];
+    if (own.is_null()) continue;  // linear modes may lead nowhere
+    EXPECT_GE(own["energy"].get<double>(),
+              (full["elastic_energy"].get<double>() + full["control_energy"].get<double>()) * (1 - 1e-9));
+  }
   EXPECT_GT(read_png(folder / "fidelity/shapes.png").width, 1000);
   EXPECT_THAT(read("fidelity/table.md"), HasSubstr("| derivatives |"));
 
