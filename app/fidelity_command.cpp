@@ -85,13 +85,6 @@ Distance distance(const Body& body, const Vector& a, const Vector& b) {
   return {rms / bounding_box(node_positions(body)).diagonal(), rms / std::sqrt(measure(body))};
 }
 
-/// The minimum of the full energy to which the shape of a subspace leads; null if there is none.
-Json own_minimum(const Body& body, const Shape& shape) {
-  if (shape.own_minimum.size() == 0) return nullptr;
-  const Distance off = distance(body, shape.displacement, shape.own_minimum);
-  return {{"energy", shape.own_energy}, {"rms_over_diagonal", off.rms}, {"l2_over_measure", off.l2}};
-}
-
 void draw_shapes(const std::filesystem::path& path, const Body& body, const std::vector<Shape>& shapes) {
   const Surface surface(body);
   const Points rest = surface.rows(node_positions(body)), reference = surface.rows(as_points(shapes.front().displacement));
@@ -167,6 +160,7 @@ void FidelityCommand::run() const {
     // Energies have many local minima, and increments of the full system run into folds that cost more than the
     // smooth shape: so it starts from the last shape of each subspace, and the one of least energy is the reference.
     const std::vector<std::vector<RigidMotion>> last{path.back()};
+    double solve_seconds = 0;  // from all starts
     for (std::size_t k = 1; k < shapes.size(); ++k) {
       Shape shape;
       shape.name = "full";
@@ -184,12 +178,10 @@ void FidelityCommand::run() const {
         shapes[k].own_energy = shape.energy();
         shapes[k].own_minimum = shape.displacement;
       }
-      shape.solve_seconds += shapes[0].solve_seconds;  // of all starts
-      if (shapes[0].led_by.empty() || shape.energy() < shapes[0].energy())
-        shapes[0] = std::move(shape);
-      else
-        shapes[0].solve_seconds = shape.solve_seconds;
+      solve_seconds += shape.solve_seconds;
+      if (shapes[0].led_by.empty() || shape.energy() < shapes[0].energy()) shapes[0] = std::move(shape);
     }
+    shapes[0].solve_seconds = solve_seconds;
   });
   if (std::find(subspaces.begin(), subspaces.end(), "extended") == subspaces.end()) shapes.erase(shapes.begin() + 1);
   if (!output.empty()) draw_shapes(output / "shapes.png", body, shapes);
@@ -207,6 +199,13 @@ void FidelityCommand::run() const {
   report["shapes"] = Json::array();
   for (const Shape& shape : shapes) {
     const Distance off = distance(body, shape.displacement, full.displacement);
+    Json own_json = nullptr;  // where the shape of a subspace leads to no minimum
+    std::string own = "–";
+    if (shape.own_minimum.size() > 0) {
+      const Distance from_own = distance(body, shape.displacement, shape.own_minimum);
+      own = shown(from_own.l2, 3);
+      own_json = {{"energy", shape.own_energy}, {"rms_over_diagonal", from_own.rms}, {"l2_over_measure", from_own.l2}};
+    }
     report["shapes"].push_back({{"space", shape.name},
                                 {"dimension", shape.dimension},
                                 {"rms_over_diagonal", off.rms},
@@ -215,11 +214,9 @@ void FidelityCommand::run() const {
                                 {"control_energy", shape.control},
                                 {"missed_solves", shape.missed},
                                 {"led_by", shape.led_by},
-                                {"own_minimum", own_minimum(body, shape)},
+                                {"own_minimum", std::move(own_json)},
                                 {"construction_seconds", shape.construction_seconds},
                                 {"solve_seconds", shape.solve_seconds}});
-    const std::string own =
-        shape.own_minimum.size() == 0 ? "–" : shown(distance(body, shape.displacement, shape.own_minimum).l2, 3);
     table += "| " + shape.name + " | " + std::to_string(shape.dimension) + " | " + shown(100 * off.rms, 3) + " | " +
              shown(off.l2, 3) + " | " + own + " | " + shown(shape.elastic, 4) + " | " + shown(shape.control, 3) + " | " +
              shown(shape.construction_seconds, 3) + " | " + shown(shape.solve_seconds, 3) + " |\n";
