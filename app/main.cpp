@@ -213,8 +213,8 @@ CLI::App& add_simulate(CLI::App& app, SimulateCommand& c) {
   simulate.add_flag("--full", c.full, "Run the unreduced system instead: all nodes, Newton's method");
   simulate.add_option("--time", c.time, "Duration [s], instead of the scene's")->type_name("T");
   simulate.add_option("--step", c.step, "Time step [s], instead of the scene's")->type_name("H");
-  simulate.add_option("--solver", c.solver, "Nonlinear solver [broyden; full: newton]")
-      ->check(CLI::IsMember({"newton", "broyden"}));
+  simulate.add_option("--solver", c.solver, "Nonlinear solver [bfgs; full: newton]")
+      ->check(CLI::IsMember({"newton", "bfgs", "broyden"}));
   simulate.add_option("--tolerance", c.tolerance, "Relative residual of a step [1e-6]")
       ->type_name("SHARE")
       ->check(CLI::PositiveNumber);

@@ -101,6 +101,16 @@ TimedSprings read_springs(const JsonFields& fields, const Body& body) {
 
 }  // namespace
 
+std::string_view name_of(NonlinearSolver solver) {
+  return solver == NonlinearSolver::Newton ? "newton" : solver == NonlinearSolver::Bfgs ? "bfgs" : "broyden";
+}
+
+NonlinearSolver solver_named(std::string_view name) {
+  for (const NonlinearSolver solver : {NonlinearSolver::Newton, NonlinearSolver::Bfgs, NonlinearSolver::Broyden})
+    if (name == name_of(solver)) return solver;
+  throw std::invalid_argument("there is no solver '" + std::string(name) + "', expected newton, bfgs or broyden");
+}
+
 Scene read_scene(const std::filesystem::path& path, const Body& body) {
   const JsonFields file = JsonFields::read(path);
   Scene scene;
@@ -128,8 +138,7 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
                      damping->number_or("beta", 0, non_negative, "s")};
   if (const auto solver = file.object_if("solver")) {
     if (solver->contains("method"))
-      scene.solver = solver->choice("method", {"newton", "broyden"}) == "newton" ? NonlinearSolver::Newton
-                                                                                 : NonlinearSolver::Broyden;
+      scene.solver = solver_named(solver->choice("method", {"newton", "bfgs", "broyden"}));
     if (solver->contains("tolerance")) scene.tolerance = solver->number("tolerance", positive);
     if (solver->contains("max_iterations"))
       scene.max_iterations = solver->integer("max_iterations", at_least(1));

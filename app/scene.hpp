@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace supple {
@@ -51,6 +52,11 @@ struct Scene {
   std::vector<Index> track;  ///< nodes
   std::string description;   ///< in a line
 };
+
+/// "newton", "bfgs", "broyden".
+std::string_view name_of(NonlinearSolver solver);
+/// \param name  one of these.
+NonlinearSolver solver_named(std::string_view name);
 
 /// \throws InputError naming file, place and what was expected there; unknown keys are refused.
 Scene read_scene(const std::filesystem::path& path, const Body& body);

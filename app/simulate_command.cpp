@@ -25,8 +25,7 @@ namespace {
 SimulationOptions decide(const SimulateCommand& command, const ReducedModel& model, Scene& scene) {
   if (command.time) scene.duration = option_quantity("--time", *command.time, "s");
   if (command.step) scene.step = option_quantity("--step", *command.step, "s");
-  if (command.solver)
-    scene.solver = *command.solver == "newton" ? NonlinearSolver::Newton : NonlinearSolver::Broyden;
+  if (command.solver) scene.solver = solver_named(*command.solver);
   if (command.tolerance) scene.tolerance = *command.tolerance;
   if (command.every) scene.every = *command.every;
   if (!command.track.empty()) scene.track = command.track;
@@ -53,9 +52,10 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
     throw InputError("--every is " + std::to_string(options.every) + ", expected at least 1");
   options.newmark.damping = scene.damping.value_or(damping(model.body));
   options.newmark.solver =
-      scene.solver.value_or(command.full ? NonlinearSolver::Newton : NonlinearSolver::Broyden);
-  if (command.full && options.newmark.solver == NonlinearSolver::Broyden) {
-    if (command.solver) throw InputError("--solver broyden is for reduced systems; --full runs with newton");
+      scene.solver.value_or(command.full ? NonlinearSolver::Newton : NonlinearSolver::Bfgs);
+  if (command.full && options.newmark.solver != NonlinearSolver::Newton) {
+    if (command.solver)
+      throw InputError("--solver " + *command.solver + " is for reduced systems; --full runs with newton");
     options.newmark.solver = NonlinearSolver::Newton;
   }
   if (scene.tolerance) options.newmark.tolerance = *scene.tolerance;
@@ -167,7 +167,7 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["duration"] = run.steps[run.finite() ? run.num_steps() : run.num_steps() - 1].time;
   json["step"] = options.step;
   json["steps"] = run.num_steps();
-  json["solver"] = options.newmark.solver == NonlinearSolver::Newton ? "newton" : "broyden";
+  json["solver"] = name_of(options.newmark.solver);
   json["tolerance"] = options.newmark.tolerance;
   json["steps_per_second"] = effort.steps_per_second;
   json["mean_iterations"] = effort.mean_iterations;

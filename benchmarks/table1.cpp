@@ -139,9 +139,10 @@ int main(int argc, char** argv) {
     for (std::size_t k = 0; k < pulls.scenes().size(); ++k) {  // one by one, for the times
       motions.push_back(pulls.move(system, k));
       const PulledMotion newton = pulls.move(system, k, NonlinearSolver::Newton);
-      out[pulls.scenes()[k].name] = {{"broyden", numbers(motions[k])},
+      out[pulls.scenes()[k].name] = {{"bfgs", numbers(motions[k])},
+                                     {"broyden", numbers(pulls.move(system, k, NonlinearSolver::Broyden))},
                                      {"newton", numbers(newton)},
-                                     {"newton_against_broyden", deviation(newton, motions[k])},
+                                     {"newton_against_bfgs", deviation(newton, motions[k])},
                                      {"largest_displacement", pulls.reach(system, motions[k].q)}};
     }
     with_reduced_system(unfitted, [&](const auto& exact) {

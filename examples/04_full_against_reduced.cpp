@@ -52,7 +52,7 @@ int main() {
 
   const ReducedModel model = reduce(solid, {.modes = 8, .points = 80});
   const Motion motion = with_reduced_system(model, [&](const auto& system) {
-    return simulate(system, NonlinearSolver::Broyden,
+    return simulate(system, NonlinearSolver::Bfgs,
                     [&](const Vector& q) { return system.subspace().at(watched, q); });
   });
 

@@ -1,9 +1,8 @@
 #pragma once
 /// \file The BFGS method: quasi-Newton minimisation from a given inverse Hessian.
 
+#include <physics/bfgs_memory.hpp>
 #include <physics/newton.hpp>
-
-#include <vector>
 
 namespace supple {
 
@@ -20,44 +19,6 @@ struct BfgsReport : Report {
   Index refreshes = 0;    ///< Hessians computed
 };
 
-namespace detail {
-
-/// The pairs (s, y) of the steps so far, and the product of the inverse Hessian that follows from them.
-class BfgsMemory {
- public:
-  /// \param y  change of the gradient over the step s, sᵀy > 0.
-  void add(Vector s, Vector y) {
-    inverse_curvature_.push_back(1 / s.dot(y));
-    s_.push_back(std::move(s));
-    y_.push_back(std::move(y));
-  }
-  void clear() {
-    s_.clear();
-    y_.clear();
-    inverse_curvature_.clear();
-  }
-  Index size() const { return static_cast<Index>(s_.size()); }
-
-  /// H g by the two-loop recursion (Nocedal 1980) over all pairs; H₀ is what the solver holds.
-  template <typename Solver>
-  Vector inverse_times(const Solver& solver, Vector g) const {
-    std::vector<double> a(s_.size());
-    for (std::size_t k = s_.size(); k-- > 0;) {
-      a[k] = inverse_curvature_[k] * s_[k].dot(g);
-      g -= a[k] * y_[k];
-    }
-    Vector d = solver.solve(g);
-    for (std::size_t k = 0; k < s_.size(); ++k) d += (a[k] - inverse_curvature_[k] * y_[k].dot(d)) * s_[k];
-    return d;
-  }
-
- private:
-  std::vector<Vector> s_, y_;
-  std::vector<double> inverse_curvature_;
-};
-
-}  // namespace detail
-
 /// Improves u until the residual ‖g‖ / scale is at most the tolerance. The matrix never appears: steps are kept and
 /// applied to what `solver` holds, O(k d) after k steps beside one solve (Dennis & Schnabel 1987, Sec. 9; Nocedal &
 /// Wright 2006, Sec. 7.2). Steps satisfy the Wolfe conditions, or their approximate form (Hager & Zhang 2005) where
@@ -67,7 +28,7 @@ template <SmoothObjective O>
 BfgsReport bfgs_minimize(O& objective, SpdSolver<typename O::MatrixType>& solver, Vector& u,
                          const BfgsOptions& options = {}) {
   BfgsReport report;
-  detail::BfgsMemory memory;
+  BfgsMemory memory;
   detail::ShiftedHessian<typename O::MatrixType> hessian;
   Vector g(u.size()), g_trial(u.size()), trial(u.size());
   objective.gradient(u, g);
@@ -127,7 +88,7 @@ BfgsReport bfgs_minimize(O& objective, SpdSolver<typename O::MatrixType>& solver
     }
     scale = objective.scale(trial);
     value = value_trial;
-    if ((g_trial - g).dot(trial - u) > 0) memory.add(trial - u, g_trial - g);
+    memory.add(trial - u, g_trial - g);
     u.swap(trial);
     g.swap(g_trial);
   }

@@ -9,7 +9,7 @@
 namespace supple {
 
 /// φ(u) = E(u) + ½ uᵀ k u − f_extᵀ u of any dynamical system (Eqs. 2 and 3 of the paper), for newton_minimize,
-/// bfgs_minimize, broyden_solve and minimize_by_nlopt. Residuals are ‖f(u) + k u − f_ext‖ against the largest of these
+/// bfgs_minimize, quasi_newton_solve and minimize_by_nlopt. Residuals are ‖f(u) + k u − f_ext‖ against the largest of these
 /// terms; what remains of them by rounding alone counts as converged, for an unloaded body has no other forces.
 template <DynamicalSystem System>
 class Equilibrium {

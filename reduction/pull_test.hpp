@@ -61,7 +61,7 @@ class PullTest {
   double step() const { return 2 * std::numbers::pi / omega_ / 60; }  ///< [s]
 
   PulledMotion move(const System& system, std::size_t scene,
-                    NonlinearSolver solver = NonlinearSolver::Broyden) const;
+                    NonlinearSolver solver = NonlinearSolver::Bfgs) const;
   /// Motions in all scenes, by all threads.
   std::vector<PulledMotion> move(const System& system) const {
     std::vector<PulledMotion> motions(scenes_.size());

@@ -39,7 +39,7 @@ TEST_F(SimulateCommandTest, WritesWhatItReports) {
   EXPECT_EQ(report["status"], "complete");
   EXPECT_EQ(report["system"], "reduced");
   EXPECT_EQ(report["unknowns"], 54);
-  EXPECT_EQ(report["solver"], "broyden");
+  EXPECT_EQ(report["solver"], "bfgs");
   EXPECT_EQ(report["missed_steps"], 0);
   EXPECT_LE(report["worst_residual"], report["tolerance"]);
   EXPECT_GT(report["steps_per_second"], 0.0);

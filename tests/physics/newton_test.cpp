@@ -1,8 +1,8 @@
-#include <physics/broyden.hpp>
 #include <physics/equilibrium.hpp>
 #include <physics/full_system.hpp>
 #include <physics/mass.hpp>
 #include <physics/newton.hpp>
+#include <physics/quasi_newton.hpp>
 #include <physics/tet_elasticity.hpp>
 #include <tests/support/meshes.hpp>
 #include <testing/near.hpp>
@@ -83,57 +83,136 @@ TYPED_TEST(StaticTest, NewtonFindsTheEquilibriumUnderGravityQuadratically) {
   EXPECT_LT(errors.back(), 1e-10);
 }
 
-TYPED_TEST(StaticTest, BroydenAgreesWithNewton) {
+/// test(memory) for each kind of memory, empty.
+template <typename Test>
+void with_every_memory(const Test& test) {
+  {
+    SCOPED_TRACE("BFGS");
+    test(BfgsMemory());
+  }
+  SCOPED_TRACE("Broyden");
+  test(BroydenMemory());
+}
+
+TYPED_TEST(StaticTest, QuasiNewtonAgreesWithNewton) {
   // a fifth of the weight: under all of it the bar has several equilibria
   const auto& system = this->cantilever.system;
   Equilibrium<typename TypeParam::System> problem(system, system.project({.gravity = {0, -2, 0}}));
-  SpdSolver<SparseMatrix> newton, broyden;
-  Vector u = Vector::Zero(system.dim()), w = u;
+  SpdSolver<SparseMatrix> newton, solver;
+  Vector u = Vector::Zero(system.dim());
   (void)newton_minimize(problem, newton, u, {.tolerance = 1e-11, .max_iterations = 40});
-  ASSERT_TRUE(broyden.factorize(system.rest_stiffness()));
-  const BroydenReport report =
-      broyden_solve(problem, broyden, w, {.tolerance = 1e-10, .max_iterations = 300});
-  EXPECT_EQ(report.status, Status::Converged) << to_string(report.status) << ", " << report.residual;
-  EXPECT_TRUE(is_near(w, u, 1e-7));  // residual 1e-10 times the condition of the stiffness
+  with_every_memory([&](auto memory) {
+    ASSERT_TRUE(solver.factorize(system.rest_stiffness()));
+    Vector w = Vector::Zero(system.dim());
+    const QuasiNewtonReport report =
+        quasi_newton_solve(problem, solver, memory, w, {.tolerance = 1e-10, .max_iterations = 300});
+    EXPECT_EQ(report.status, Status::Converged) << to_string(report.status) << ", " << report.residual;
+    EXPECT_TRUE(is_near(w, u, 1e-7));  // residual 1e-10 times the condition of the stiffness
+  });
 }
 
-TYPED_TEST(StaticTest, BroydenKeepsTheJacobianWhereItHelps) {
+TYPED_TEST(StaticTest, QuasiNewtonKeepsTheJacobianWhereItHelps) {
   // a hundredth of the weight: nearly linear, so the Jacobian at rest does
   const auto& system = this->cantilever.system;
   Equilibrium<typename TypeParam::System> light(system, system.project({.gravity = {0, -0.01, 0}}));
   SpdSolver<SparseMatrix> solver;
   ASSERT_TRUE(solver.factorize(system.rest_stiffness()));
-  Vector u = Vector::Zero(system.dim());
-  const BroydenReport report = broyden_solve(light, solver, u, {.tolerance = 1e-10});
-  EXPECT_EQ(report.status, Status::Converged);
-  EXPECT_EQ(report.refreshes, 0);
-  EXPECT_LE(report.iterations, 12);
-  const Vector start = u;
-  EXPECT_EQ(broyden_solve(light, solver, u, {.tolerance = 1e-10}).iterations, 0) << "already there";
-  EXPECT_TRUE(is_same(u, start));
+  with_every_memory([&](auto memory) {
+    Vector u = Vector::Zero(system.dim());
+    const QuasiNewtonReport report = quasi_newton_solve(light, solver, memory, u, {.tolerance = 1e-10});
+    EXPECT_EQ(report.status, Status::Converged);
+    EXPECT_EQ(report.refreshes, 0);
+    EXPECT_LE(report.iterations, 12);
+    const Vector start = u;
+    memory.clear();
+    EXPECT_EQ(quasi_newton_solve(light, solver, memory, u, {.tolerance = 1e-10}).iterations, 0) << "already there";
+    EXPECT_TRUE(is_same(u, start));
+  });
 }
 
-TEST(Broyden, IsExactForALinearProblemWithItsJacobian) {
+TYPED_TEST(StaticTest, ASecondSolveUsesWhatTheFirstHasLearnt) {
+  const auto& system = this->cantilever.system;
+  Equilibrium<typename TypeParam::System> problem(system, system.project({.gravity = {0, -0.1, 0}}));
+  SpdSolver<SparseMatrix> solver;
+  ASSERT_TRUE(solver.factorize(system.rest_stiffness()));
+  BfgsMemory memory;
+  const auto iterations = [&] {
+    Vector u = Vector::Zero(system.dim());
+    const auto report = quasi_newton_solve(problem, solver, memory, u, {.tolerance = 1e-10, .refresh_cost = 1000});
+    EXPECT_EQ(report.status, Status::Converged);
+    EXPECT_EQ(report.refreshes, 0);
+    return report.iterations;
+  };
+  const Index first = iterations();
+  EXPECT_LT(iterations(), first);
+}
+
+TEST(QuasiNewton, IsExactForALinearProblemWithItsJacobian) {
   const Matrix A = (Matrix(2, 2) << 4, 1, 1, 3).finished();
   const Vector b = Vector::Ones(2);
   DenseObjective objective(
       2, [&](VectorIn u) { return 0.5 * u.dot(A * u) - b.dot(u); },
       [&](VectorIn u) { return Vector(A * u - b); }, [&](VectorIn) { return A; });
   SpdSolver<Matrix> solver;
-  ASSERT_TRUE(solver.factorize(A));
-  Vector u = Vector::Zero(2);
-  const BroydenReport exact = broyden_solve(objective, solver, u, {.tolerance = 1e-14});
-  EXPECT_EQ(exact.status, Status::Converged);
-  EXPECT_EQ(exact.iterations, 1);
-  // from another matrix it ends after at most 2 d steps (Gay 1979)
-  ASSERT_TRUE(solver.factorize(5 * Matrix::Identity(2, 2)));
-  u.setZero();
-  const BroydenReport other =
-      broyden_solve(objective, solver, u, {.tolerance = 1e-12, .max_iterations = 20, .refresh_cost = 100});
-  EXPECT_EQ(other.status, Status::Converged);
-  EXPECT_EQ(other.refreshes, 0);
-  EXPECT_LE(other.iterations, 5);
-  EXPECT_TRUE(is_near(A * u, b, 1e-11));
+  with_every_memory([&](auto memory) {
+    ASSERT_TRUE(solver.factorize(A));
+    Vector u = Vector::Zero(2);
+    const QuasiNewtonReport exact = quasi_newton_solve(objective, solver, memory, u, {.tolerance = 1e-14});
+    EXPECT_EQ(exact.status, Status::Converged);
+    EXPECT_EQ(exact.iterations, 1);
+    // from another matrix Broyden's method ends after at most 2 d steps (Gay 1979)
+    ASSERT_TRUE(solver.factorize(5 * Matrix::Identity(2, 2)));
+    u.setZero();
+    memory.clear();
+    const QuasiNewtonReport other = quasi_newton_solve(
+        objective, solver, memory, u, {.tolerance = 1e-12, .max_iterations = 20, .refresh_cost = 100});
+    EXPECT_EQ(other.status, Status::Converged);
+    EXPECT_EQ(other.refreshes, 0);
+    EXPECT_LE(other.iterations, (std::is_same_v<decltype(memory), BroydenMemory> ? 5 : 10));
+    EXPECT_TRUE(is_near(A * u, b, 1e-11));
+  });
+}
+
+/// The matrix that a memory stands for, beside H₀ = 2 I.
+Matrix inverse_of(const BfgsMemory& memory, Index d) {
+  SpdSolver<Matrix> solver;
+  EXPECT_TRUE(solver.factorize(0.5 * Matrix::Identity(d, d)));
+  Matrix inverse(d, d);
+  for (Index j = 0; j < d; ++j) inverse.col(j) = memory.inverse_times(solver, Vector::Unit(d, j));
+  return inverse;
+}
+
+TEST(BfgsMemory, IsSymmetricPositiveDefiniteAndMeetsTheLastSecant) {
+  const Index d = 6;
+  BfgsMemory memory;
+  for (int k = 0; k < 12; ++k) {
+    const Vector s = random_vector(d, 1, k);
+    const Vector y = s.cwiseProduct(Vector::LinSpaced(d, 1, 9)) + random_vector(d, 0.01, 100 + k);
+    memory.add(s, y);
+    const Matrix inverse = inverse_of(memory, d);
+    EXPECT_TRUE(is_near(inverse * y, s, 1e-12));
+    EXPECT_TRUE(is_near(inverse, inverse.transpose(), 1e-12));
+    EXPECT_TRUE(SpdSolver<Matrix>().factorize(inverse));
+  }
+  EXPECT_EQ(memory.size(), 12);
+}
+
+TEST(BfgsMemory, ForgetsTheOldestAndLeavesOutWhatIsNotConvex) {
+  const Index d = 5;
+  BfgsMemory limited(3), last;
+  for (int k = 0; k < 7; ++k) {
+    const Vector s = random_vector(d, 1, k);
+    limited.add(s, 3 * s);
+    limited.add(s, -s);
+    limited.add(s, Vector::Zero(d));
+    limited.add(s, s * std::numeric_limits<double>::quiet_NaN());
+    if (k >= 4) last.add(s, 3 * s);
+  }
+  EXPECT_EQ(limited.size(), 3);
+  EXPECT_TRUE(is_same(inverse_of(limited, d), inverse_of(last, d)));
+  limited.clear();
+  EXPECT_EQ(limited.size(), 0);
+  EXPECT_TRUE(is_near(inverse_of(limited, d), 2 * Matrix::Identity(d, d), 1e-15));
 }
 
 TEST(Newton, LeavesAMaximumAndASaddleForAMinimum) {
@@ -264,7 +343,9 @@ TEST(Newton, EndsWithNotFiniteWhereTheStartIsNot) {
   u[4] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(newton_minimize(c.problem, solver, u).status, Status::NotFinite);
   ASSERT_TRUE(solver.factorize(c.system.rest_stiffness()));
-  EXPECT_EQ(broyden_solve(c.problem, solver, u).status, Status::NotFinite);
+  with_every_memory([&](auto memory) {
+    EXPECT_EQ(quasi_newton_solve(c.problem, solver, memory, u).status, Status::NotFinite);
+  });
   EXPECT_EQ(u.array().isNaN().count(), 1) << "u stays as it was";
 }
 

@@ -250,8 +250,8 @@ TEST(Collapse, WithoutReductionTheReducedTrajectoryIsTheFullOne) {
   const double size = full.lpNorm<Eigen::Infinity>();
   ASSERT_GT(size, 0.1) << "the motion is to be nonlinear";
   ASSERT_GT((full.col(19) - full.col(9)).lpNorm<Eigen::Infinity>(), 0.01) << "and to move";
-  for (const NonlinearSolver solver : {NonlinearSolver::Newton, NonlinearSolver::Broyden}) {
-    SCOPED_TRACE(solver == NonlinearSolver::Newton ? "Newton" : "Broyden");
+  for (const NonlinearSolver solver : {NonlinearSolver::Newton, NonlinearSolver::Bfgs, NonlinearSolver::Broyden}) {
+    SCOPED_TRACE(static_cast<int>(solver));
     EXPECT_TRUE(is_near(Swing::run(nodal, solver, [&](VectorIn q) { return basis.reconstruct(q); }), full,
                         1e-6 * size));
   }

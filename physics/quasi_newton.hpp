@@ -1,41 +1,69 @@
 #pragma once
-/// \file Broyden's method: quasi-Newton steps from a given inverse Jacobian, refreshed when it no longer
-/// helps.
+/// \file Quasi-Newton steps from a given inverse Jacobian, which is refreshed when it no longer helps.
 
+#include <physics/bfgs_memory.hpp>
 #include <physics/newton.hpp>
 
 #include <vector>
 
 namespace supple {
 
-struct BroydenOptions {
+/// What steps tell about a Jacobian, symmetric or not, by the "good" Broyden method with the steps in memory
+/// instead of matrices: each takes O(d) beside one product with B₀⁻¹ (Dennis & Schnabel 1987, Sec. 8; Kelley
+/// 1995, Sec. 7.3). Each step has to be the −B⁻¹ g that this memory gives, and start where the last one ended.
+class BroydenMemory {
+ public:
+  /// y, the change of g over the step, follows from g in the next call of inverse_times.
+  void add(Vector s, VectorIn /*y*/) {
+    squared_norms_.push_back(s.squaredNorm());
+    steps_.push_back(std::move(s));
+  }
+  void clear() {
+    steps_.clear();
+    squared_norms_.clear();
+  }
+
+  /// B⁻¹ g, B₀ being what the solver holds and g the gradient after the last step.
+  template <typename Solver>
+  Vector inverse_times(const Solver& solver, VectorIn g) const {
+    Vector d = solver.solve(g);
+    for (std::size_t j = 0; j + 1 < steps_.size(); ++j)
+      d += steps_[j + 1] * (steps_[j].dot(d) / squared_norms_[j]);
+    if (!steps_.empty()) d /= 1 + steps_.back().dot(d) / squared_norms_.back();
+    return d;
+  }
+
+ private:
+  std::vector<Vector> steps_;
+  std::vector<double> squared_norms_;
+};
+
+struct QuasiNewtonOptions {
   double tolerance = 1e-6;    ///< relative residual ‖g‖ / scale to reach
   Index max_iterations = 60;  ///< evaluations of the force, all together
   /// The Jacobian is computed afresh when convergence so far predicts more than this many further iterations.
   /// About the cost of a tangent and its factorisation in evaluations of the force; lower it for violent
   /// motions.
-  double refresh_cost = 10;
+  double refresh_cost = 20;
 };
 
-struct BroydenReport : Report {
+struct QuasiNewtonReport : Report {
   Index refreshes = 0;  ///< Newton steps, each of which left a new Jacobian in the solver
 };
 
-/// Solves g(u) = 0 by the "good" Broyden method with memory of the steps instead of matrices: s_{k+1} follows
-/// from B₀⁻¹ g by k rank-one corrections (Dennis & Schnabel 1987, Sec. 8; Kelley 1995, Sec. 7.3), O(k d) each
-/// beside one product with B₀⁻¹. B₀ is what `solver` holds, and if convergence is too slow, a Newton step
-/// with line search replaces it; the solver keeps the new one for later calls.
-template <SmoothObjective O>
-BroydenReport broyden_solve(O& objective, SpdSolver<typename O::MatrixType>& solver, Vector& u,
-                            const BroydenOptions& options = {}) {
-  BroydenReport report;
+/// Solves g(u) = 0 by full quasi-Newton steps. `solver` holds B₀; if convergence is too slow, a Newton step with
+/// line search replaces it, clears the memory, and the solver keeps the new one for later calls.
+/// \param memory  a BroydenMemory that is empty, or a BfgsMemory, which may know steps of similar problems.
+template <SmoothObjective O, typename Memory>
+QuasiNewtonReport quasi_newton_solve(O& objective, SpdSolver<typename O::MatrixType>& solver, Memory& memory,
+                                     Vector& u, const QuasiNewtonOptions& options = {}) {
+  QuasiNewtonReport report;
   Vector g(u.size()), g_trial(u.size());
   objective.gradient(u, g);
   detail::ShiftedHessian<typename O::MatrixType> hessian;
-  std::vector<Vector> steps;  // s_0 … s_k since the last refresh
-  std::vector<double> squared_norms;
   // Progress is judged by ‖g‖ itself: far away the scale grows as fast, and ‖g‖ / scale tells nothing.
   double norm = g.norm(), first_norm = norm, scale = objective.scale(u);
+  double taken = 0;  // steps since the last refresh
   for (;;) {
     report.residual = detail::relative(norm, scale);
     if (!std::isfinite(report.residual)) return report.status = Status::NotFinite, report;
@@ -43,27 +71,23 @@ BroydenReport broyden_solve(O& objective, SpdSolver<typename O::MatrixType>& sol
     if (report.iterations >= options.max_iterations) return report.status = Status::MaxIterations, report;
     ++report.iterations;
 
-    Vector step = -solver.solve(g);
-    for (std::size_t j = 0; j + 1 < steps.size(); ++j)
-      step += steps[j + 1] * (steps[j].dot(step) / squared_norms[j]);
-    if (!steps.empty()) step /= 1 - steps.back().dot(step) / squared_norms.back();
+    Vector step = -memory.inverse_times(solver, g);
     const Vector trial = u + step;
     objective.gradient(trial, g_trial);
     const double trial_norm = g_trial.norm(), trial_scale = objective.scale(trial);
     const double target = options.tolerance * trial_scale;
 
-    const double taken = static_cast<double>(steps.size()) + 1;
+    ++taken;
     const double rate = std::log(trial_norm / first_norm) / taken;  // of the logarithm of ‖g‖, per iteration
     const bool slow =
         !(trial_norm < 2 * norm) ||
         (taken >= 2 && !(std::log(target / trial_norm) / rate <= options.refresh_cost && rate < 0));
     if (!slow || trial_norm <= target) {
+      memory.add(std::move(step), g_trial - g);
       u = trial;
       g = g_trial;
       norm = trial_norm;
       scale = trial_scale;
-      squared_norms.push_back(step.squaredNorm());
-      steps.push_back(std::move(step));
       continue;
     }
     if (trial_norm < norm) {
@@ -71,6 +95,7 @@ BroydenReport broyden_solve(O& objective, SpdSolver<typename O::MatrixType>& sol
       g = g_trial;
     }
     const bool decreased = detail::newton_step(objective, solver, hessian, u, g);
+    memory.clear();
     objective.gradient(u, g);
     norm = first_norm = g.norm();
     scale = objective.scale(u);
@@ -79,8 +104,7 @@ BroydenReport broyden_solve(O& objective, SpdSolver<typename O::MatrixType>& sol
       return report.status = Status::Stagnated, report;
     }
     ++report.refreshes;
-    steps.clear();
-    squared_norms.clear();
+    taken = 0;
   }
 }
 
