@@ -19,6 +19,12 @@ namespace {
 template <typename Element>
 struct Faces;
 template <>
+struct Faces<LinearTet> {
+  static constexpr int num_corners = 3;
+  static constexpr std::array<std::array<int, 3>, 4> of_cell{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+  static constexpr std::array<std::array<int, 3>, 1> triangles{{{0, 1, 2}}};
+};
+template <>
 struct Faces<TrilinearHex> {
   static constexpr int num_corners = 4;
   static constexpr std::array<std::array<int, 4>, 6> of_cell{
@@ -34,22 +40,22 @@ struct Faces<QuadraticTet> {
 };
 
 /// All faces of the cells of a mesh: number e · faces_per_cell + k is face k of cell e.
-template <typename Element>
+template <typename Mesh>
 class CellFaces {
  public:
-  using Table = Faces<Element>;
+  using Table = Faces<ElementOf<Mesh>>;
   static constexpr Index per_cell = Table::of_cell.size();
   using Nodes = std::array<Index, Table::of_cell[0].size()>;
   using Corners = std::array<Index, Table::num_corners>;
 
-  explicit CellFaces(const CellMesh<Element::num_nodes>& mesh) : mesh_(mesh) {}
+  explicit CellFaces(const Mesh& mesh) : mesh_(mesh) {}
 
-  Index count() const { return per_cell * mesh_.num_cells(); }
+  Index count() const { return per_cell * num_cells(mesh_); }
   static Index cell(Index face) { return face / per_cell; }
   Nodes nodes(Index face) const {
     Nodes result;
     const auto& table = Table::of_cell[face % per_cell];
-    for (std::size_t k = 0; k < result.size(); ++k) result[k] = mesh_.cells[cell(face)][table[k]];
+    for (std::size_t k = 0; k < result.size(); ++k) result[k] = cells_of(mesh_)[cell(face)][table[k]];
     return result;
   }
   Corners corners(Index face) const {
@@ -102,7 +108,7 @@ class CellFaces {
   }
 
  private:
-  const CellMesh<Element::num_nodes>& mesh_;
+  const Mesh& mesh_;
 };
 
 /// Rest positions relative to node 0, so that where the object lies costs no digits [m].
@@ -139,6 +145,16 @@ struct CellNames {
   std::string node(Index v) const { return "node " + number(numbers.node, v); }
 };
 
+/// \throws std::invalid_argument unless the tet is positively oriented, by more than rounding.
+void check_shape(const TetMesh& mesh, Index e, const CellNames<LinearTet>& names) {
+  const int orientation = tet_orientation(mesh, e);
+  const double volume = tet_volume(mesh, e);
+  if (!std::isfinite(volume) || (orientation == 1 && !(volume > 0)))
+    throw std::invalid_argument("the volume of " + names.cell(e) + " is beyond the range of numbers");
+  if (orientation == 0) throw std::invalid_argument(names.cell(e) + " has zero volume: its nodes lie in a plane");
+  if (orientation < 0) throw std::invalid_argument(names.cell(e) + " is reversed: its volume is negative");
+}
+
 /// \throws std::invalid_argument unless det J > 0, by more than rounding, wherever it is needed.
 template <typename Element>
 void check_shape(const CellMesh<Element::num_nodes>& mesh, Index e, const CellNames<Element>& names) {
@@ -164,14 +180,16 @@ void check_shape(const CellMesh<Element::num_nodes>& mesh, Index e, const CellNa
   check_rule(Element::mass_points, "mass point ");
 }
 
-template <typename Element>
-void check_cells(const CellMesh<Element::num_nodes>& mesh, const MeshNumbers& numbers) {
+template <typename Mesh>
+void check_cells(const Mesh& mesh, const MeshNumbers& numbers) {
+  using Element = ElementOf<Mesh>;
   const CellNames<Element> names{numbers};
-  require(mesh.num_cells() > 0, "mesh has no cells");
-  if (!mesh.region.empty()) require_size("mesh.region", static_cast<Index>(mesh.region.size()), mesh.num_cells());
+  const auto& cells = cells_of(mesh);
+  require(num_cells(mesh) > 0, "mesh has no cells");
+  if (!mesh.region.empty()) require_size("mesh.region", static_cast<Index>(mesh.region.size()), num_cells(mesh));
   std::vector<char> used(mesh.num_nodes(), false);
-  for (Index e = 0; e < mesh.num_cells(); ++e) {
-    const auto& cell = mesh.cells[e];
+  for (Index e = 0; e < num_cells(mesh); ++e) {
+    const auto& cell = cells[e];
     for (auto at = cell.begin(); at != cell.end(); ++at) {
       if (*at < 0 || *at >= mesh.num_nodes())
         throw std::invalid_argument(names.cell(e) + " names node " + std::to_string(*at) + ", which does not exist");
@@ -181,19 +199,20 @@ void check_cells(const CellMesh<Element::num_nodes>& mesh, const MeshNumbers& nu
     }
   }
   for (Index v = 0; v < mesh.num_nodes(); ++v) {
-    if (!used[v]) throw std::invalid_argument(names.node(v) + " belongs to no cell");
+    if (!used[v]) throw std::invalid_argument(names.node(v) + " belongs to no " + std::string(Element::name));
     if (!mesh.nodes.row(v).allFinite())
       throw std::invalid_argument(names.node(v) + " has a coordinate that is not finite");
   }
-  for (Index e = 0; e < mesh.num_cells(); ++e) check_shape<Element>(mesh, e, names);
+  for (Index e = 0; e < num_cells(mesh); ++e) check_shape(mesh, e, names);
 
-  const CellFaces<Element> faces(mesh);
+  const CellFaces faces(mesh);
+  constexpr bool all_nodes_are_corners = Faces<Element>::of_cell[0].size() == Faces<Element>::num_corners;
   faces.visit_equal_faces([&](std::span<const Index> same) {
     if (same.size() == 1) return;
     const auto one = faces.cycle(same[0]), other = faces.cycle(same[1]);
     const auto nodes_of = [](const auto& nodes) { return std::set<Index>(nodes.begin(), nodes.end()); };
     const bool is_pair = same.size() == 2 && one.corners == other.corners && one.turned != other.turned;
-    if (is_pair && (Element::num_nodes == 8 || nodes_of(faces.nodes(same[0])) == nodes_of(faces.nodes(same[1]))))
+    if (is_pair && (all_nodes_are_corners || nodes_of(faces.nodes(same[0])) == nodes_of(faces.nodes(same[1]))))
       return;
     std::string corners;
     for (const Index v : faces.corners(same[0]))
@@ -202,7 +221,7 @@ void check_cells(const CellMesh<Element::num_nodes>& mesh, const MeshNumbers& nu
     const std::string pair = names.cell(first) + " and " + names.cell(second), face = "face (" + corners + ")";
     if (is_pair)
       throw std::invalid_argument(pair + " have different nodes amid the edges of their common " + face);
-    if (nodes_of(mesh.cells[first]) == nodes_of(mesh.cells[second]))
+    if (nodes_of(cells[first]) == nodes_of(cells[second]))
       throw std::invalid_argument(pair + " have the same nodes");
     if (one.corners != other.corners || one.turned == other.turned)
       throw std::invalid_argument(pair + " overlap: they do not lie on either side of their common " + face +
@@ -212,25 +231,27 @@ void check_cells(const CellMesh<Element::num_nodes>& mesh, const MeshNumbers& nu
   });
 }
 
-template <typename Element>
-std::vector<Triangle> cut_boundary(const CellMesh<Element::num_nodes>& mesh) {
-  const CellFaces<Element> faces(mesh);
+template <typename Mesh>
+std::vector<Triangle> cut_boundary(const Mesh& mesh) {
+  const CellFaces faces(mesh);
   std::vector<char> outside(faces.count(), false);
   faces.visit_equal_faces([&](std::span<const Index> same) { outside[same[0]] = same.size() == 1; });
   std::vector<Triangle> result;
   for (Index face = 0; face < faces.count(); ++face) {
     if (!outside[face]) continue;
     const auto nodes = faces.nodes(face);
-    for (const auto& [a, b, c] : Faces<Element>::triangles) result.push_back({nodes[a], nodes[b], nodes[c]});
+    for (const auto& [a, b, c] : Faces<ElementOf<Mesh>>::triangles) result.push_back({nodes[a], nodes[b], nodes[c]});
   }
   return result;
 }
 
-template <int nodes_per_cell>
-NodeComponents components(const CellMesh<nodes_per_cell>& mesh) {
-  return connected_components(
-      {mesh.cells.empty() ? nullptr : mesh.cells.front().data(), nodes_per_cell * mesh.cells.size()}, nodes_per_cell,
-      mesh.num_nodes());
+template <typename Mesh>
+NodeComponents components(const Mesh& mesh) {
+  const auto& cells = cells_of(mesh);
+  constexpr Index size = ElementOf<Mesh>::num_nodes;
+  static_assert(sizeof(cells[0]) == size * sizeof(Index));
+  return connected_components({cells.empty() ? nullptr : cells.front().data(), size * cells.size()}, size,
+                              mesh.num_nodes());
 }
 
 }  // namespace
@@ -328,20 +349,29 @@ double radius_ratio(const QuadraticTetMesh& mesh, Index e) {
   return radius_ratio(mesh.nodes, Tet{cell[0], cell[1], cell[2], cell[3]});
 }
 
+void check_mesh(const TetMesh& mesh, const MeshNumbers& numbers) {
+  check_cells(mesh, numbers);
+}
 void check_mesh(const HexMesh& mesh, const MeshNumbers& numbers) {
-  check_cells<TrilinearHex>(mesh, numbers);
+  check_cells(mesh, numbers);
 }
 void check_mesh(const QuadraticTetMesh& mesh, const MeshNumbers& numbers) {
-  check_cells<QuadraticTet>(mesh, numbers);
+  check_cells(mesh, numbers);
 }
 
+std::vector<Triangle> boundary_faces(const TetMesh& mesh) {
+  return cut_boundary(mesh);
+}
 std::vector<Triangle> boundary_faces(const HexMesh& mesh) {
-  return cut_boundary<TrilinearHex>(mesh);
+  return cut_boundary(mesh);
 }
 std::vector<Triangle> boundary_faces(const QuadraticTetMesh& mesh) {
-  return cut_boundary<QuadraticTet>(mesh);
+  return cut_boundary(mesh);
 }
 
+Hinges boundary_hinges(const TetMesh& mesh) {
+  return surface_hinges(boundary_faces(mesh), mesh.num_nodes());
+}
 Hinges boundary_hinges(const HexMesh& mesh) {
   return surface_hinges(boundary_faces(mesh), mesh.num_nodes());
 }
@@ -349,6 +379,9 @@ Hinges boundary_hinges(const QuadraticTetMesh& mesh) {
   return surface_hinges(boundary_faces(mesh), mesh.num_nodes());
 }
 
+NodeComponents connected_components(const TetMesh& mesh) {
+  return components(mesh);
+}
 NodeComponents connected_components(const HexMesh& mesh) {
   return components(mesh);
 }

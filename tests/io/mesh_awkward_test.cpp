@@ -67,7 +67,7 @@ const std::vector<Decision>& decisions() {
       refused("tet_inverted_geometry.msh", "so the mesh is tangled"),
       refused("tet_zero_volume.mesh", "tet 7 has zero volume"),
       refused("tet_repeated_index", "tet 6 names node 2 twice"),
-      refused("tet_duplicate_element.msh", "tet 5 and tet 50 have the same four nodes"),
+      refused("tet_duplicate_element.msh", "tet 5 and tet 50 have the same nodes"),
       // Topology: what hangs together loosely can be simulated, but may surprise.
       read("topo_duplicate_vertices.msh", {"9 nodes lie where another node is", "2 components"}, 2, 54, 96),
       read("topo_disconnected.mesh", {"2 components"}, 2, 54, 96),

@@ -171,7 +171,7 @@ TEST(CheckMesh, NamesTheFirstFault) {
   };
   TetMesh mesh = single_tet();
   mesh.tets.clear();
-  EXPECT_THAT(message(mesh), HasSubstr("no tets"));
+  EXPECT_THAT(message(mesh), HasSubstr("no cells"));
   mesh = single_tet();
   mesh.tets[0][2] = 4;
   EXPECT_THAT(message(mesh), HasSubstr("tet 0 names node 4, which does not exist"));
@@ -196,7 +196,7 @@ TEST(CheckMesh, NamesTheFirstFault) {
   EXPECT_THAT(message(mesh), HasSubstr("mesh.region has size 2, expected 6"));
   mesh.region.clear();
   mesh.tets.push_back(mesh.tets[4]);
-  EXPECT_THAT(message(mesh), HasSubstr("have the same four nodes"));
+  EXPECT_THAT(message(mesh), HasSubstr("have the same nodes"));
   mesh = single_tet();  // a second apex on the same side of a face
   mesh.nodes.conservativeResize(5, 3);
   mesh.nodes.row(4) << 0.2, 0.2, 0.8;
