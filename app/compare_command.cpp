@@ -4,9 +4,9 @@
 #include <app/surface.hpp>
 #include <app/terminal.hpp>
 #include <app/trajectory.hpp>
-#include <core/version.hpp>
 #include <core/check.hpp>
 #include <core/parallel.hpp>
+#include <core/version.hpp>
 #include <io/csv.hpp>
 #include <io/plot.hpp>
 
@@ -33,12 +33,10 @@ std::vector<std::pair<Index, Index>> common_frames(const CompareCommand& command
   std::vector<std::pair<Index, Index>> pairs;
   for (Index f = 0; f < inside(few); ++f) {
     const double time = few.time[f];
-    const Index at =
-        std::lower_bound(many.time.begin(), many.time.end(), time - tolerance) - many.time.begin();
+    const Index at = std::lower_bound(many.time.begin(), many.time.end(), time - tolerance) - many.time.begin();
     if (at == many.num_frames() || many.time[at] > time + tolerance)
-      throw InputError((a_is_sparse ? command.reference : command.first).string() +
-                       ": there is no frame at " + shown(time, 8) + " s, where " +
-                       (a_is_sparse ? command.first : command.reference).string() +
+      throw InputError((a_is_sparse ? command.reference : command.first).string() + ": there is no frame at " +
+                       shown(time, 8) + " s, where " + (a_is_sparse ? command.first : command.reference).string() +
                        " has one; run both with the same --step and --every");
     pairs.push_back(a_is_sparse ? std::pair(f, at) : std::pair(at, f));
   }
@@ -60,9 +58,7 @@ struct Series {
   }
 
  private:
-  static double ratio(double error, double size) {
-    return size > 0 ? error / size : error > 0 ? not_a_number : 0;
-  }
+  static double ratio(double error, double size) { return size > 0 ? error / size : error > 0 ? not_a_number : 0; }
 };
 
 struct Comparison {
@@ -74,15 +70,13 @@ struct Comparison {
       : time(frames), position(frames), velocity(frames), energy(frames), largest_distance(frames) {}
 };
 
-std::pair<std::string, std::string> names(const CompareCommand& command, const Trajectory& a,
-                                          const Trajectory& b) {
+std::pair<std::string, std::string> names(const CompareCommand& command, const Trajectory& a, const Trajectory& b) {
   if (a.reduced != b.reduced) return a.reduced ? std::pair("reduced", "full") : std::pair("full", "reduced");
   return {command.first.filename().string(), command.reference.filename().string()};
 }
 
 void write_errors(const std::filesystem::path& path, const Comparison& c) {
-  CsvTable table{
-      {"time", "s"}, {"position_error"}, {"velocity_error"}, {"energy_error"}, {"largest_distance", "m"}};
+  CsvTable table{{"time", "s"}, {"position_error"}, {"velocity_error"}, {"energy_error"}, {"largest_distance", "m"}};
   const Vector position = c.position.share(), velocity = c.velocity.share(), energy = c.energy.share();
   for (Index f = 0; f < c.time.size(); ++f)
     table.add_row(c.time[f], position[f], velocity[f], energy[f], c.largest_distance[f]);
@@ -135,9 +129,7 @@ void CompareCommand::run() const {
   if (!output.empty()) make_folder(output);
 
   const Vector mass = nodal_mass(model_b.body);
-  const auto norm = [&](const Vector& field) {
-    return std::sqrt(as_points(field).rowwise().squaredNorm().dot(mass));
-  };
+  const auto norm = [&](const Vector& field) { return std::sqrt(as_points(field).rowwise().squaredNorm().dot(mass)); };
   Comparison result(static_cast<Index>(frames.size()));
   const Progress progress = progress_bar();
   for (Index k = 0; k < result.time.size(); ++k) {
@@ -178,9 +170,8 @@ void CompareCommand::run() const {
   Json report;
   report["command"] = "compare";
   report["version"] = SUPPLE_VERSION;
-  report["first"] = {{"source", first.string()},
-                     {"system", a.reduced ? "reduced" : "full"},
-                     {"steps_per_second", a.steps_per_second}};
+  report["first"] = {
+      {"source", first.string()}, {"system", a.reduced ? "reduced" : "full"}, {"steps_per_second", a.steps_per_second}};
   report["reference"] = {{"source", reference.string()},
                          {"system", b.reduced ? "reduced" : "full"},
                          {"steps_per_second", b.steps_per_second}};
@@ -198,16 +189,14 @@ void CompareCommand::run() const {
   if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) {
     const auto errors = [](const Series& series) {
-      return shown_percent(series.relative()) + "; worst frame " + shown_percent(series.largest()) +
-             " of the largest";
+      return shown_percent(series.relative()) + "; worst frame " + shown_percent(series.largest()) + " of the largest";
     };
-    Rows rows{{"frames",
-               std::to_string(frames.size()) + " until " + shown(result.time[result.time.size() - 1]) + " s"},
+    Rows rows{{"frames", std::to_string(frames.size()) + " until " + shown(result.time[result.time.size() - 1]) + " s"},
               {"positions", errors(result.position)},
               {"velocities", errors(result.velocity)},
               {"energy", errors(result.energy)},
-              {"farthest node", shown(distance, 3) + " m apart, " + shown_percent(distance / diagonal, 2) +
-                                    " of the diagonal"},
+              {"farthest node",
+               shown(distance, 3) + " m apart, " + shown_percent(distance / diagonal, 2) + " of the diagonal"},
               {"steps/s", shown(a.steps_per_second) + " against " + shown(b.steps_per_second) + ": " +
                               shown(a.steps_per_second / b.steps_per_second, 3) + " times as fast"}};
     if (!output.empty()) rows.emplace_back("results", output.string());

@@ -3,18 +3,18 @@
 #include <app/mesh_source.hpp>
 #include <app/selector_table.hpp>
 #include <app/terminal.hpp>
-#include <core/version.hpp>
 #include <core/output_file.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
+#include <core/version.hpp>
 #include <sparse/selector_library.hpp>
 
 namespace supple {
 
 namespace {
 
-SelectorRun run_selector(const SelectionStudy& study, const std::string& selector, Index size,
-                         std::uint64_t seed, const Progress& progress) {
+SelectorRun run_selector(const SelectionStudy& study, const std::string& selector, Index size, std::uint64_t seed,
+                         const Progress& progress) {
   SelectionRequest request(size);
   request.progress = progress;
   const double before = processor_seconds();
@@ -28,10 +28,9 @@ std::string description(const CompareSelectorsCommand& command, const ReduceOpti
                         const SelectionStudy& study) {
   const ReduceReport& report = study.report();
   std::string text = shown_count(report.components) + " " + std::string(component_name(body)) + " (" +
-                     std::string(law(body)) + "), subspace of dimension " +
-                     std::to_string(report.dimension) + ", " + std::to_string(report.poses) +
-                     " training poses by the " + command.recipe + " recipe, errors in the " +
-                     (options.norm == ForceNorm::Mass ? "mass" : "stiffness") + " norm, " +
+                     std::string(law(body)) + "), subspace of dimension " + std::to_string(report.dimension) + ", " +
+                     std::to_string(report.poses) + " training poses by the " + command.recipe +
+                     " recipe, errors in the " + (options.norm == ForceNorm::Mass ? "mass" : "stiffness") + " norm, " +
                      std::to_string(command.runs) + (command.runs == 1 ? " seed" : " seeds") + ".";
   if (!study.scenes().empty()) text += " Pulls reach";
   for (std::size_t k = 0; k < study.scenes().size(); ++k)

@@ -4,10 +4,10 @@
 #include <app/frames.hpp>
 #include <app/json_report.hpp>
 #include <app/terminal.hpp>
-#include <core/version.hpp>
 #include <core/check.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
+#include <core/version.hpp>
 #include <io/csv.hpp>
 #include <physics/full_system.hpp>
 #include <reduction/editor.hpp>
@@ -61,7 +61,8 @@ EditRun run_edits(const System& system, const Points& rest, const std::vector<Ha
 }
 
 void write_solves(const std::filesystem::path& path, const EditRun& run) {
-  CsvTable table{{"solve"}, {"elastic", "J"}, {"control", "J"}, {"iterations"}, {"tangents"}, {"residual"}, {"status"}, {"seconds", "s"}};
+  CsvTable table{{"solve"},    {"elastic", "J"}, {"control", "J"}, {"iterations"},
+                 {"tangents"}, {"residual"},     {"status"},       {"seconds", "s"}};
   for (std::size_t k = 0; k < run.solves.size(); ++k) {
     const SolveRecord& solve = run.solves[k];
     table.add_row(k + 1, solve.elastic, solve.control, solve.report.iterations, solve.report.tangents,
@@ -125,7 +126,8 @@ void EditCommand::run() const {
       // each solve begins where the reduced model says that the handles lead
       const auto led = [&](Index k, const Vector& state) -> Vector {
         const Vector way = (result.states.row(k + 1) - result.states.row(k)).transpose();
-        return state + std::visit([&](const auto& basis) { return system.restrict(basis->reconstruct(way)); }, reduced.subspace);
+        return state + std::visit([&](const auto& basis) { return system.restrict(basis->reconstruct(way)); },
+                                  reduced.subspace);
       };
       const auto expand = [&](VectorIn u) -> Vector { return system.expand(u); };
       return run_edits(system, rest, handles, path, options, expand, expand, led, progress);
@@ -203,8 +205,8 @@ void EditCommand::run() const {
               {"residual", "at most " + shown(worst, 2) + ", asked for " + shown(options.tolerance)},
               {"energy", shown(last.elastic) + " J elastic, " + shown(last.control) + " J of the handles"}};
     if (reconstruction > 0)
-      rows.emplace_back("reconstruction",
-                        shown(1e3 * reconstruction / static_cast<double>(frames_count), 3) + " ms a frame of all nodes");
+      rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(frames_count), 3) +
+                                              " ms a frame of all nodes");
     if (!output.empty()) rows.emplace_back("results", output.string());
     print_rows(stdout, "edit of " + model.string(), rows);
     print_stages(stdout, times.seconds(), times.total());

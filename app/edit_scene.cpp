@@ -53,7 +53,8 @@ RigidMotion read_motion(const JsonFields& fields, const HandleRegion& handle, co
   }
   const Point axis = fields.point("axis", "1"), mean = nodes(handle.nodes, Eigen::all).colwise().mean().transpose();
   if (!(axis.norm() > 0)) fields.fail("axis", "has no direction");
-  return RigidMotion::turn(axis, fields.number("angle", any_number, "rad"), fields.point_or("centre", mean), translation);
+  return RigidMotion::turn(axis, fields.number("angle", any_number, "rad"), fields.point_or("centre", mean),
+                           translation);
 }
 
 }  // namespace
@@ -86,7 +87,9 @@ EditScene read_edit_scene(const std::filesystem::path& path, const Body& body) {
   if (const auto solver = file.object_if("solver")) {
     if (solver->contains("method")) {
       const std::string method = solver->choice("method", {"newton", "bfgs", "nlopt"});
-      scene.method = method == "newton" ? StaticMethod::Newton : method == "bfgs" ? StaticMethod::Bfgs : StaticMethod::Nlopt;
+      scene.method = method == "newton" ? StaticMethod::Newton
+                     : method == "bfgs" ? StaticMethod::Bfgs
+                                        : StaticMethod::Nlopt;
     }
     if (solver->contains("tolerance")) scene.tolerance = solver->number("tolerance", positive);
     if (solver->contains("max_iterations")) scene.max_iterations = solver->integer("max_iterations", at_least(1));

@@ -21,8 +21,7 @@ void watch_for_signals() {
   sigemptyset(&ending);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction current {};
-    if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler == SIG_IGN)
-      continue;  // as under nohup
+    if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler == SIG_IGN) continue;  // as under nohup
     sigaddset(&ending, signal);
   }
   pthread_sigmask(SIG_BLOCK, &ending, nullptr);

@@ -4,11 +4,11 @@
 #include <app/json_report.hpp>
 #include <app/surface.hpp>
 #include <app/terminal.hpp>
-#include <core/version.hpp>
 #include <core/check.hpp>
 #include <core/output_file.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
+#include <core/version.hpp>
 #include <reduction/editor.hpp>
 #include <reduction/galerkin_system.hpp>
 #include <reduction/reduce.hpp>
@@ -30,7 +30,7 @@ struct Shape {
   double elastic = 0, control = 0;
   double construction_seconds = 0, solve_seconds = 0;
   Index solves = 0, missed = 0;
-  std::string led_by;         ///< of the full space: the subspace from whose shape it was found
+  std::string led_by;  ///< of the full space: the subspace from whose shape it was found
   // of a subspace: the minimum that the full space finds from its shape; NaN and empty if it finds none
   double own_energy = std::numeric_limits<double>::quiet_NaN();
   Vector own_minimum;
@@ -87,7 +87,8 @@ Distance distance(const Body& body, const Vector& a, const Vector& b) {
 
 void draw_shapes(const std::filesystem::path& path, const Body& body, const std::vector<Shape>& shapes) {
   const Surface surface(body);
-  const Points rest = surface.rows(node_positions(body)), reference = surface.rows(as_points(shapes.front().displacement));
+  const Points rest = surface.rows(node_positions(body)),
+               reference = surface.rows(as_points(shapes.front().displacement));
   std::vector<PictureObject> objects;
   for (const Shape& shape : shapes) {
     const Points moved = surface.rows(as_points(shape.displacement));
@@ -218,8 +219,8 @@ void FidelityCommand::run() const {
                                 {"construction_seconds", shape.construction_seconds},
                                 {"solve_seconds", shape.solve_seconds}});
     table += "| " + shape.name + " | " + std::to_string(shape.dimension) + " | " + shown(100 * off.rms, 3) + " | " +
-             shown(off.l2, 3) + " | " + own + " | " + shown(shape.elastic, 4) + " | " + shown(shape.control, 3) + " | " +
-             shown(shape.construction_seconds, 3) + " | " + shown(shape.solve_seconds, 3) + " |\n";
+             shown(off.l2, 3) + " | " + own + " | " + shown(shape.elastic, 4) + " | " + shown(shape.control, 3) +
+             " | " + shown(shape.construction_seconds, 3) + " | " + shown(shape.solve_seconds, 3) + " |\n";
     if (shape.missed > 0)
       warn(shape.name + ": " + std::to_string(shape.missed) + " of " + std::to_string(shape.solves) +
            " solves missed the tolerance; try more increments");
@@ -231,7 +232,8 @@ void FidelityCommand::run() const {
     write_file(output / "table.md", table);
   }
   if (!output.empty()) write_json(output / "report.json", report);
-  if (!is_stdout(json)) std::fputs(("Shapes of " + mesh + " under " + edits.description + "\n\n" + table).c_str(), stdout);
+  if (!is_stdout(json))
+    std::fputs(("Shapes of " + mesh + " under " + edits.description + "\n\n" + table).c_str(), stdout);
   write_json(json, report);
 }
 

@@ -21,8 +21,7 @@ std::vector<Index> telling_frames(const std::vector<Points>& surface_displacemen
       largest = f;
     }
   for (Index f = largest + 1; f < count; ++f)
-    if (const double norm = (surface_displacement[f] - surface_displacement[largest]).norm();
-        norm > distance) {
+    if (const double norm = (surface_displacement[f] - surface_displacement[largest]).norm(); norm > distance) {
       distance = norm;
       farthest = f;
     }
@@ -32,9 +31,9 @@ std::vector<Index> telling_frames(const std::vector<Points>& surface_displacemen
   return frames;
 }
 
-void draw_frames(const std::filesystem::path& path, const Points& rest,
-                 const std::vector<Triangle>& triangles, const std::vector<Points>& displacement,
-                 const Vector& times, const std::function<std::string(double)>& caption) {
+void draw_frames(const std::filesystem::path& path, const Points& rest, const std::vector<Triangle>& triangles,
+                 const std::vector<Points>& displacement, const Vector& times,
+                 const std::function<std::string(double)>& caption) {
   std::vector<PictureObject> objects;
   for (const Index f : telling_frames(displacement)) {
     PictureObject object{.positions = rest + displacement[f], .triangles = triangles};
@@ -48,7 +47,8 @@ void draw_frames(const std::filesystem::path& path, const Points& rest,
 }  // namespace
 
 double write_frames(const std::filesystem::path& folder, const std::string& frames, const ReducedModel& model,
-                    const Trajectory& trajectory, const std::function<std::string(double)>& caption, const Progress& progress) {
+                    const Trajectory& trajectory, const std::function<std::string(double)>& caption,
+                    const Progress& progress) {
   const Points& nodes = node_positions(model.body);
   const Surface surface(model.body);
   const Points rest = surface.rows(nodes);
@@ -86,8 +86,7 @@ double write_frames(const std::filesystem::path& folder, const std::string& fram
     tell(progress, "frames", static_cast<double>(f + 1) / static_cast<double>(trajectory.num_frames()));
   }
   tell(progress, "picture", 0);
-  draw_frames(folder / "picture.png", rest, surface.triangles, surface_displacement,
-              trajectory.time, caption);
+  draw_frames(folder / "picture.png", rest, surface.triangles, surface_displacement, trajectory.time, caption);
   return seconds;
 }
 

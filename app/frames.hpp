@@ -15,6 +15,7 @@ namespace supple {
 /// \param frames  "surface", "cells" or, the same, "tets" (for solids) or "none" (the picture alone).
 /// \return seconds of the reconstruction of all nodes alone.
 double write_frames(const std::filesystem::path& folder, const std::string& frames, const ReducedModel& model,
-                    const Trajectory& trajectory, const std::function<std::string(double)>& caption, const Progress& progress);
+                    const Trajectory& trajectory, const std::function<std::string(double)>& caption,
+                    const Progress& progress);
 
 }  // namespace supple

@@ -3,8 +3,8 @@
 #include <app/json_report.hpp>
 #include <app/mesh_source.hpp>
 #include <app/terminal.hpp>
-#include <core/version.hpp>
 #include <core/check.hpp>
+#include <core/version.hpp>
 #include <io/builtin_meshes.hpp>
 #include <io/builtin_surfaces.hpp>
 #include <io/vtu_writer.hpp>
@@ -24,8 +24,7 @@ namespace {
 bool is_tensor_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   char head[9] = {};
-  return file.read(head, sizeof head) && head[8] == '{' && head[4] == 0 && head[5] == 0 && head[6] == 0 &&
-         head[7] == 0;
+  return file.read(head, sizeof head) && head[8] == '{' && head[4] == 0 && head[5] == 0 && head[6] == 0 && head[7] == 0;
 }
 
 std::string shown_point(const Point& p) {
@@ -78,8 +77,7 @@ Json mesh_json(const Mesh& mesh, Rows& rows) {
                            {shape, "worst " + shown(worst, 2) + ", mean " + shown(mean, 2)},
                            {"components", std::to_string(components)}});
   if (hinges.edges + hinges.nodes > 0)
-    rows.emplace_back("hinges",
-                      std::to_string(hinges.edges) + " edges, " + std::to_string(hinges.nodes) + " nodes");
+    rows.emplace_back("hinges", std::to_string(hinges.edges) + " edges, " + std::to_string(hinges.nodes) + " nodes");
   Json json{{"nodes", mesh.num_nodes()},
             {json_key(kind), num_cells(mesh)},
             {"boundary_faces", faces},
@@ -106,8 +104,7 @@ Json mesh_json(const TriangleMesh& mesh, Rows& rows) {
   const auto [area, worst, mean] = element_shapes(
       mesh.num_triangles(), [&](Index t) { return triangle_area(mesh, t); },
       [&](Index t) { return radius_ratio(mesh, t); });
-  const Index components = connected_components(mesh).count,
-              flaps = static_cast<Index>(interior_edges(mesh).size()),
+  const Index components = connected_components(mesh).count, flaps = static_cast<Index>(interior_edges(mesh).size()),
               boundary = static_cast<Index>(boundary_edges(mesh).size());
   rows.insert(rows.end(), {{"nodes", shown_count(mesh.num_nodes())},
                            {"triangles", shown_count(mesh.num_triangles())},
@@ -148,16 +145,15 @@ Json model_json(const ReducedModel& model, Rows& rows) {
   for (Index k = 0; k < std::min<Index>(materials.rows(), 4); ++k)
     parameters += (k > 0 ? "; " : " ") + joined(materials.row(k), 3);
   const bool shell = std::holds_alternative<Shell>(model.body);
-  rows.insert(
-      rows.end(),
-      {{"law", std::string(law(model.body)) + "," + parameters + (shell ? " J, N/m, N/m" : " Pa") +
-                   (materials.rows() > 4 ? "; ..." : "")},
-       {"mass", shown(mass) + " kg"},
-       {"fixed nodes", shown_count(static_cast<long long>(fixed))},
-       {"damping", "alpha " + shown(damping.alpha) + " 1/s, beta " + shown(damping.beta) + " s"},
-       {"subspace", "dimension " + std::to_string(model.dim()) + ", " + model.subspace_name},
-       {"modes", joined(hertz, 8) + " Hz"},
-       {"points", std::to_string(model.indices.size()) + " " + std::string(component_name(model.body))}});
+  rows.insert(rows.end(),
+              {{"law", std::string(law(model.body)) + "," + parameters + (shell ? " J, N/m, N/m" : " Pa") +
+                           (materials.rows() > 4 ? "; ..." : "")},
+               {"mass", shown(mass) + " kg"},
+               {"fixed nodes", shown_count(static_cast<long long>(fixed))},
+               {"damping", "alpha " + shown(damping.alpha) + " 1/s, beta " + shown(damping.beta) + " s"},
+               {"subspace", "dimension " + std::to_string(model.dim()) + ", " + model.subspace_name},
+               {"modes", joined(hertz, 8) + " Hz"},
+               {"points", std::to_string(model.indices.size()) + " " + std::string(component_name(model.body))}});
   Json json{{"dimension", model.dim()},
             {"points", model.indices.size()},
             {"component", component_name(model.body)},
@@ -173,8 +169,7 @@ Json model_json(const ReducedModel& model, Rows& rows) {
             {"provenance", Json::object()}};
   for (Index k = 0; k < materials.rows(); ++k) json["materials"].push_back(json_numbers(materials.row(k)));
   for (const auto& [key, text] : model.provenance) {
-    const Json parsed =
-        key == "options" || key.ends_with("_error") ? Json::parse(text, nullptr, false) : Json(text);
+    const Json parsed = key == "options" || key.ends_with("_error") ? Json::parse(text, nullptr, false) : Json(text);
     json["provenance"][key] = parsed.is_discarded() ? Json(text) : parsed;
     rows.emplace_back(key, text);
   }

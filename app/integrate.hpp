@@ -13,13 +13,11 @@ class SceneLoads {
   using Load = AffineLoad<typename System::MatrixType>;
 
  public:
-  SceneLoads(const System& system, const Scene& scene)
-      : scene_(scene), load_{Vector::Zero(system.dim()), {}} {
+  SceneLoads(const System& system, const Scene& scene) : scene_(scene), load_{Vector::Zero(system.dim()), {}} {
     for (const TimedLoads& timed : scene.loads) columns_.push_back(system.project(timed.loads).force);
     for (const TimedSprings& timed : scene.springs) {
       Loads loads;
-      for (const auto& [node, stiffness] : timed.springs)
-        loads.springs.push_back({node, stiffness, Point::Zero()});
+      for (const auto& [node, stiffness] : timed.springs) loads.springs.push_back({node, stiffness, Point::Zero()});
       for (int x = 0; x < 3; ++x) {
         for (PointSpring& spring : loads.springs) spring.displacement = Point::Unit(x);
         Load unit = system.project(loads);
@@ -72,8 +70,8 @@ class SceneLoads {
 /// \param frame  unknowns → the coordinates that frames keep.
 /// \param displacement  (unknowns, node) → displacement of a node [m].
 template <DynamicalSystem System, typename Frame, typename Displacement>
-Simulation integrate(const System& system, const Scene& scene, const SimulationOptions& options,
-                     const Frame& frame, const Displacement& displacement, const Progress& progress) {
+Simulation integrate(const System& system, const Scene& scene, const SimulationOptions& options, const Frame& frame,
+                     const Displacement& displacement, const Progress& progress) {
   Simulation result;
   result.unknowns = system.dim();
   const Index num_frames = options.num_steps / options.every + 1;
@@ -94,8 +92,8 @@ Simulation integrate(const System& system, const Scene& scene, const SimulationO
   const auto record = [&](const StepReport& report, double work) {
     const Index k = static_cast<Index>(result.steps.size());
     result.steps.push_back({static_cast<double>(k) * options.step, newmark.kinetic_energy(state),
-                            system.energy(state.u), work, report.iterations, report.refreshes,
-                            report.residual, report.status});
+                            system.energy(state.u), work, report.iterations, report.refreshes, report.residual,
+                            report.status});
     for (std::size_t j = 0; j < scene.track.size(); ++j)
       result.tracked.template block<1, 3>(k, 3 * j) = displacement(state.u, scene.track[j]).transpose();
     if (k % options.every != 0) return;

@@ -65,8 +65,7 @@ void require_writable(const std::filesystem::path& path) {
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (!error && !std::filesystem::is_directory(folder, error))
-    error = std::make_error_code(std::errc::not_a_directory);
+  if (!error && !std::filesystem::is_directory(folder, error)) error = std::make_error_code(std::errc::not_a_directory);
   if (error) throw InputError(folder.string() + ": the folder cannot be made: " + error.message());
 }
 

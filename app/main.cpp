@@ -1,15 +1,15 @@
-#include <app/edit_command.hpp>
-#include <app/fidelity_command.hpp>
 #include <app/compare_command.hpp>
 #include <app/compare_selectors_command.hpp>
+#include <app/edit_command.hpp>
 #include <app/exit_guard.hpp>
+#include <app/fidelity_command.hpp>
 #include <app/info_command.hpp>
 #include <app/reduce_command.hpp>
 #include <app/select_command.hpp>
 #include <app/simulate_command.hpp>
 #include <app/terminal.hpp>
-#include <core/version.hpp>
 #include <core/check.hpp>
+#include <core/version.hpp>
 #include <io/builtin_meshes.hpp>
 #include <io/builtin_surfaces.hpp>
 #include <io/json_fields.hpp>
@@ -28,8 +28,7 @@ namespace {
 using namespace supple;
 
 void add_json(CLI::App& app, std::filesystem::path& json) {
-  app.add_option("--json", json, "Report for machines; '-': to stdout, instead of the text")
-      ->type_name("FILE");
+  app.add_option("--json", json, "Report for machines; '-': to stdout, instead of the text")->type_name("FILE");
 }
 
 void add_threads(CLI::App& app, int& threads) {
@@ -79,8 +78,7 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
       ->capture_default_str()
       ->group(object);
   command.add_option("--poisson", c.poisson, "Poisson's ratio")->capture_default_str()->group(object);
-  command
-      .add_option("--thickness", c.thickness, "Of a surface, a discrete shell [m]; or a share of its diagonal [1%]")
+  command.add_option("--thickness", c.thickness, "Of a surface, a discrete shell [m]; or a share of its diagonal [1%]")
       ->type_name("H")
       ->group(object);
   command.add_option("--density", c.density, "Density [kg/m^3]")->capture_default_str()->group(object);
@@ -105,8 +103,7 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
   const auto each = [&](auto& values, const char* name, const char* type, const char* help) {
     command.add_option(name, values, help)->type_name(type)->expected(1)->take_all()->group(object);
   };
-  each(c.fix, "--fix", "RULE",
-       "Hold nodes, e.g. 'y<4%' (of the bounding box) or 'x>=0.25' [m]; may be repeated");
+  each(c.fix, "--fix", "RULE", "Hold nodes, e.g. 'y<4%' (of the bounding box) or 'x>=0.25' [m]; may be repeated");
   each(c.fix_box, "--fix-box", "BOX", "Hold the nodes in a box x,y,z:x,y,z [m]; may be repeated");
   each(c.fix_file, "--fix-file", "FILE", "Hold the nodes that a file lists, one index a line, from 0");
   each(c.fix_region, "--fix-region", "TAG", "Hold the nodes of a region, by name or number");
@@ -117,8 +114,10 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
       ->check(CLI::IsMember({"default", "paper"}))
       ->group(method);
   command
-      .add_option("--subspace", c.subspace, "extended (modes under all linear maps), modal (modes alone), derivatives (modal derivatives), skinning "
-                  "(skinning eigenmodes), pca (of --snapshots)")
+      .add_option(
+          "--subspace", c.subspace,
+          "extended (modes under all linear maps), modal (modes alone), derivatives (modal derivatives), skinning "
+          "(skinning eigenmodes), pca (of --snapshots)")
       ->capture_default_str()
       ->check(CLI::IsMember(known_subspaces()))
       ->group(method);
@@ -126,13 +125,10 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
       ->type_name("D")
       ->check(CLI::PositiveNumber)
       ->group(method);
-  command
-      .add_option("--snapshots", c.snapshots, "Displacements for --subspace pca: .npy, tensor file or trajectory")
+  command.add_option("--snapshots", c.snapshots, "Displacements for --subspace pca: .npy, tensor file or trajectory")
       ->type_name("FILE")
       ->group(method);
-  command.add_option("--modes", c.modes, "Vibration modes, rigid ones included [15]")
-      ->type_name("R")
-      ->group(method);
+  command.add_option("--modes", c.modes, "Vibration modes, rigid ones included [15]")->type_name("R")->group(method);
   command.add_option("--poses", c.poses, "Training poses [300; paper: 1000]")->type_name("T")->group(method);
   command
       .add_option("--amplitude", c.amplitudes,
@@ -143,8 +139,7 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
       ->take_all()
       ->group(method);
   command
-      .add_option("--omega-exponent", c.omega_exponent,
-                  "Poses have deviations ~ 1/omega^E in each mode [2; paper: 1]")
+      .add_option("--omega-exponent", c.omega_exponent, "Poses have deviations ~ 1/omega^E in each mode [2; paper: 1]")
       ->type_name("E")
       ->group(method);
   command.add_option("--norm", c.norm, "Measure of the fitted forces [stiffness; paper: mass]")
@@ -155,9 +150,7 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
                   "Poses with inverted cells [keep; shrink for laws that are undefined there]")
       ->check(CLI::IsMember({"keep", "shrink", "redraw"}))
       ->group(method);
-  command
-      .add_option("--poses-file", c.poses_file,
-                  "Poses instead of random ones: .npy, tensor file or trajectory")
+  command.add_option("--poses-file", c.poses_file, "Poses instead of random ones: .npy, tensor file or trajectory")
       ->type_name("FILE")
       ->group(method);
   command
@@ -195,7 +188,8 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
       ->check(CLI::IsMember(known_selectors()))
       ->group(method);
   add_threads(reduce, c.threads);
-  reduce.footer(material_help() + "\nBuilt-in meshes:\n" + std::string(builtin_mesh_help) + std::string(builtin_surface_help) +
+  reduce.footer(material_help() + "\nBuilt-in meshes:\n" + std::string(builtin_mesh_help) +
+                std::string(builtin_surface_help) +
                 "\nExamples:\n"
                 "supple reduce dragon.msh -o dragon.supple --fix 'y<4%' --points 150\n"
                 "supple reduce octopus -o octopus.supple --fix 'y<4%' --picture octopus.png --json -");
@@ -203,12 +197,10 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
 }
 
 CLI::App& add_simulate(CLI::App& app, SimulateCommand& c) {
-  CLI::App& simulate =
-      *app.add_subcommand("simulate", "Run a scene with a reduced model, or with the full one");
+  CLI::App& simulate = *app.add_subcommand("simulate", "Run a scene with a reduced model, or with the full one");
   simulate.add_option("MODEL", c.model, "Model that 'supple reduce' made")->required();
   simulate
-      .add_option("--scene", c.scene,
-                  "Loads and springs over time, see docs/scene.md; without: pulled, then released")
+      .add_option("--scene", c.scene, "Loads and springs over time, see docs/scene.md; without: pulled, then released")
       ->type_name("FILE.json");
   simulate.add_flag("--full", c.full, "Run the unreduced system instead: all nodes, Newton's method");
   simulate.add_option("--time", c.time, "Duration [s], instead of the scene's")->type_name("T");
@@ -218,16 +210,13 @@ CLI::App& add_simulate(CLI::App& app, SimulateCommand& c) {
   simulate.add_option("--tolerance", c.tolerance, "Relative residual of a step [1e-6]")
       ->type_name("SHARE")
       ->check(CLI::PositiveNumber);
-  simulate
-      .add_option("-o,--output", c.output,
-                  "Folder for trajectory, energies, pictures and ParaView's series.pvd")
+  simulate.add_option("-o,--output", c.output, "Folder for trajectory, energies, pictures and ParaView's series.pvd")
       ->type_name("DIR");
   simulate.add_option("--every", c.every, "A frame after so many steps [at most 100 frames]")->type_name("N");
   simulate.add_option("--frames", c.frames, "What ParaView gets: surface, cells or none")
       ->capture_default_str()
       ->check(CLI::IsMember({"surface", "cells", "tets", "none"}));
-  simulate
-      .add_option("--track", c.track, "Node whose displacement is recorded in every step; may be repeated")
+  simulate.add_option("--track", c.track, "Node whose displacement is recorded in every step; may be repeated")
       ->type_name("NODE")
       ->expected(1)
       ->take_all();
@@ -246,8 +235,7 @@ CLI::App& add_compare(CLI::App& app, CompareCommand& c) {
   CLI::App& compare = *app.add_subcommand("compare", "Measure how far one trajectory is from another");
   compare.add_option("FIRST", c.first, "Folder or trajectory file of 'supple simulate'")->required();
   compare.add_option("REFERENCE", c.reference, "What it is compared with")->required();
-  compare.add_option("-o,--output", c.output, "Folder for errors.csv, errors.png and comparison.png")
-      ->type_name("DIR");
+  compare.add_option("-o,--output", c.output, "Folder for errors.csv, errors.png and comparison.png")->type_name("DIR");
   add_json(compare, c.json);
   add_threads(compare, c.threads);
   compare.footer(
@@ -280,8 +268,7 @@ CLI::App& add_compare_selectors(CLI::App& app, CompareSelectorsCommand& c) {
       .add_flag("--trajectories", c.trajectories,
                 "Compare pulled motions, too; their reference evaluates every component, which takes a minute")
       ->group(comparison);
-  compare
-      .add_option("-o,--output", c.output, "Folder for runs.csv, table.md, plots and the page index.html")
+  compare.add_option("-o,--output", c.output, "Folder for runs.csv, table.md, plots and the page index.html")
       ->type_name("DIR");
   add_json(compare, c.json);
   add_threads(compare, c.threads);
@@ -293,21 +280,17 @@ CLI::App& add_compare_selectors(CLI::App& app, CompareSelectorsCommand& c) {
 }
 
 CLI::App& add_select(CLI::App& app, SelectCommand& c) {
-  CLI::App& select =
-      *app.add_subcommand("select", "Choose few columns of a matrix A, with weights w: A w ~ b");
+  CLI::App& select = *app.add_subcommand("select", "Choose few columns of a matrix A, with weights w: A w ~ b");
   const auto problem = "Problem";
   select.add_option("--matrix", c.matrix, "A: NumPy .npy or Matrix Market .mtx")
       ->required()
       ->type_name("FILE")
       ->group(problem);
-  select
-      .add_option("--rhs", c.rhs,
-                  "b, likewise; without: b = A 1, the sum of all columns, as cubature fits it")
+  select.add_option("--rhs", c.rhs, "b, likewise; without: b = A 1, the sum of all columns, as cubature fits it")
       ->type_name("FILE")
       ->group(problem);
   CLI::Option& held_out =
-      *select
-           .add_option("--validate-matrix", c.validate_matrix, "Held-out rows of A, to measure the error on")
+      *select.add_option("--validate-matrix", c.validate_matrix, "Held-out rows of A, to measure the error on")
            ->type_name("FILE")
            ->group(problem);
   select.add_option("--validate-rhs", c.validate_rhs, "Their b; without: their A 1, if there is no --rhs")
@@ -327,8 +310,7 @@ CLI::App& add_select(CLI::App& app, SelectCommand& c) {
       ->type_name("S")
       ->check(CLI::PositiveNumber)
       ->group(method);
-  select
-      .add_option("--target-error", c.target_error, "Take as few columns as reach |A w - b| / |b| <= SHARE")
+  select.add_option("--target-error", c.target_error, "Take as few columns as reach |A w - b| / |b| <= SHARE")
       ->type_name("SHARE")
       ->check(CLI::PositiveNumber)
       ->group(method);
@@ -345,8 +327,7 @@ CLI::App& add_select(CLI::App& app, SelectCommand& c) {
   select.add_option("--must-keep", c.must_keep, "Columns that are in the answer, if need be with weight 0")
       ->type_name("FILE")
       ->group(method);
-  select
-      .add_option("--warm-start", c.warm_start, "Earlier report to improve: its indices and positive weights")
+  select.add_option("--warm-start", c.warm_start, "Earlier report to improve: its indices and positive weights")
       ->type_name("FILE.json")
       ->group(method);
   select
@@ -369,9 +350,12 @@ CLI::App& add_select(CLI::App& app, SelectCommand& c) {
 CLI::App& add_edit(CLI::App& app, EditCommand& c) {
   CLI::App& edit = *app.add_subcommand("edit", "Deform an object by moving handles on it");
   edit.add_option("MODEL", c.model, "Model that 'supple reduce' made")->required();
-  edit.add_option("--scene", c.scene, "Handles and their motions, see docs/edit-scene.md")->required()->type_name("FILE.json");
+  edit.add_option("--scene", c.scene, "Handles and their motions, see docs/edit-scene.md")
+      ->required()
+      ->type_name("FILE.json");
   edit.add_flag("--full", c.full, "Solve the unreduced system, the reference");
-  edit.add_option("--solver", c.solver, "Of the equilibrium [newton]")->check(CLI::IsMember({"newton", "bfgs", "nlopt"}));
+  edit.add_option("--solver", c.solver, "Of the equilibrium [newton]")
+      ->check(CLI::IsMember({"newton", "bfgs", "nlopt"}));
   edit.add_option("--tolerance", c.tolerance, "Residual of a solve against its largest force [1e-6]");
   edit.add_option("--frames", c.frames, "What ParaView gets of every solve")
       ->capture_default_str()
@@ -450,8 +434,7 @@ std::string not_expected(const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{"Supple: reduced deformable objects, from a mesh to a real-time model with a measured error",
-               "supple"};
+  CLI::App app{"Supple: reduced deformable objects, from a mesh to a real-time model with a measured error", "supple"};
   app.set_version_flag("--version", "supple " SUPPLE_VERSION);
   app.require_subcommand(1);
   app.footer(

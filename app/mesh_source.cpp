@@ -3,8 +3,8 @@
 #include <core/check.hpp>
 #include <io/builtin_meshes.hpp>
 #include <io/builtin_surfaces.hpp>
-#include <io/mesh_repairs.hpp>
 #include <io/mesh_reader.hpp>
+#include <io/mesh_repairs.hpp>
 #include <io/surface_reader.hpp>
 
 #include <algorithm>
@@ -33,8 +33,9 @@ NamedMesh load_mesh(const std::string& spec) {
     return result;
   }
   if (!std::filesystem::exists(spec))
-    throw InputError(spec + ": there is no such file, and no built-in mesh of this name (bar, cube, menger, ball, "
-                            "octopus, hexbox, tet10; plate, cylinder, sphere)");
+    throw InputError(spec +
+                     ": there is no such file, and no built-in mesh of this name (bar, cube, menger, ball, "
+                     "octopus, hexbox, tet10; plate, cylinder, sphere)");
   if (is_surface_file(spec))
     result.mesh = read_triangle_mesh(spec, &result.notes);
   else

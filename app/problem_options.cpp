@@ -97,14 +97,12 @@ void set_materials(const ProblemOptions& problem, SolidOf<Mesh>& solid) {
     const Material base = materials[0] = read_material(*file, law, materials[0]);
     if (const auto regions = file->object_if("regions")) {
       if (mesh.region.empty())
-        throw InputError(problem.materials->string() +
-                         ": the mesh has no regions, so there is nothing to tell apart");
+        throw InputError(problem.materials->string() + ": the mesh has no regions, so there is nothing to tell apart");
       std::map<int, std::int32_t> material_of_region;
       for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end())) {
         material_of_region[tag] = 0;
         const auto name = mesh.region_names.find(tag);
-        for (const std::string& key :
-             {name == mesh.region_names.end() ? "" : name->second, std::to_string(tag)})
+        for (const std::string& key : {name == mesh.region_names.end() ? "" : name->second, std::to_string(tag)})
           if (!key.empty() && regions->contains(key)) {
             material_of_region[tag] = static_cast<std::int32_t>(materials.size());
             materials.push_back(read_material(regions->object(key), law, base));
@@ -134,9 +132,7 @@ double shell_thickness(const ProblemOptions& problem, const TriangleMesh& mesh) 
 }
 
 InvertedPoses inverted_poses(const std::string& word) {
-  return word == "keep"     ? InvertedPoses::Keep
-         : word == "shrink" ? InvertedPoses::Shrink
-                            : InvertedPoses::Redraw;
+  return word == "keep" ? InvertedPoses::Keep : word == "shrink" ? InvertedPoses::Shrink : InvertedPoses::Redraw;
 }
 
 const char* to_text(ForceNorm norm) {
@@ -203,8 +199,8 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
   if (problem.omega_exponent) options.poses.omega_exponent = *problem.omega_exponent;
   if (!problem.amplitudes.empty()) options.poses.amplitudes = problem.amplitudes;
   if (problem.norm) options.norm = *problem.norm == "mass" ? ForceNorm::Mass : ForceNorm::Stiffness;
-  options.poses.inverted = inverted_rule(
-      law(body), problem.inverted ? std::optional(inverted_poses(*problem.inverted)) : std::nullopt);
+  options.poses.inverted =
+      inverted_rule(law(body), problem.inverted ? std::optional(inverted_poses(*problem.inverted)) : std::nullopt);
   if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, named.nodes());
   return options;
 }

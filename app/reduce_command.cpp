@@ -4,9 +4,9 @@
 #include <app/reduce_command.hpp>
 #include <app/surface.hpp>
 #include <app/terminal.hpp>
-#include <core/version.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
+#include <core/version.hpp>
 #include <io/plot.hpp>
 
 #include <algorithm>
@@ -64,8 +64,7 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
                    {"inverted", report.inverted_poses},
                    {"redrawn", report.redrawn_poses},
                    {"shrunk", report.shrunk_poses}};
-  json["modes"] = {
-      {"omega", json_numbers(report.omega)}, {"rigid", report.rigid_modes}, {"dropped", report.dropped}};
+  json["modes"] = {{"omega", json_numbers(report.omega)}, {"rigid", report.rigid_modes}, {"dropped", report.dropped}};
   json["eigenvalues"] = {{"fitted", json_numbers(report.fitted_eigenvalues)},
                          {"exact", json_numbers(report.exact_eigenvalues)}};
   const SelectionReport& selection = report.selection;
@@ -86,8 +85,7 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
 }
 
 /// The object with its selected components as balls.
-void draw_selection(const std::filesystem::path& path, const ReducedModel& model,
-                    const ReduceReport& report) {
+void draw_selection(const std::filesystem::path& path, const ReducedModel& model, const ReduceReport& report) {
   const Points& nodes = node_positions(model.body);
   Points centres(static_cast<Index>(model.indices.size()), 3);
   with_force_model(model.body, [&](const auto& force) {
@@ -101,8 +99,9 @@ void draw_selection(const std::filesystem::path& path, const ReducedModel& model
   const Surface surface(model.body);
   PictureObject object{.positions = surface.rows(nodes), .triangles = surface.triangles};
   object.markers = centres;
-  object.caption = std::to_string(report.points) + " of " + shown_count(report.components) +
-                   " " + std::string(component_name(model.body)) + ", training error " + shown_percent(report.training_error, 2);
+  object.caption = std::to_string(report.points) + " of " + shown_count(report.components) + " " +
+                   std::string(component_name(model.body)) + ", training error " +
+                   shown_percent(report.training_error, 2);
   write_picture(path, {object});
 }
 
@@ -132,8 +131,8 @@ void draw_spectrum(const std::filesystem::path& path, const std::string& kind, c
   const auto hertz = [](const Vector& eigenvalues) -> Vector {
     return eigenvalues.cwiseMax(0).cwiseSqrt() / (2 * std::numbers::pi);
   };
-  const Vector number = Vector::LinSpaced(report.exact_eigenvalues.size(), 1,
-                                          static_cast<double>(report.exact_eigenvalues.size()));
+  const Vector number =
+      Vector::LinSpaced(report.exact_eigenvalues.size(), 1, static_cast<double>(report.exact_eigenvalues.size()));
   const ExitGuard guard;
   draw_plot(path, {.title = "Softest frequencies of the reduced model at rest",
                    .x = {.label = "flexible mode", .low = 0.5, .high = number.size() + 0.5},
@@ -145,25 +144,23 @@ void draw_spectrum(const std::filesystem::path& path, const std::string& kind, c
 
 void print_summary(const ReduceCommand& command, const ReducedModel& model, const ReduceReport& report) {
   const std::string kind(component_name(model.body));
-  Rows rows{
-      {"object", shown_count(report.nodes) + " nodes, " + shown_count(report.components) + " " + kind + ", " +
-                     (report.fixed_nodes > 0 ? shown_count(report.fixed_nodes) + " nodes fixed" : "free")},
-      {"subspace", "dimension " + std::to_string(report.dimension) + " from " +
-                       std::to_string(report.omega.size()) + " modes" +
-                       (report.rigid_modes > 0 ? " (" + std::to_string(report.rigid_modes) + " rigid)" : "")},
-      {"points", std::to_string(report.points) + " " + kind},
-      {"training error", shown_percent(report.training_error)}};
+  Rows rows{{"object", shown_count(report.nodes) + " nodes, " + shown_count(report.components) + " " + kind + ", " +
+                           (report.fixed_nodes > 0 ? shown_count(report.fixed_nodes) + " nodes fixed" : "free")},
+            {"subspace", "dimension " + std::to_string(report.dimension) + " from " +
+                             std::to_string(report.omega.size()) + " modes" +
+                             (report.rigid_modes > 0 ? " (" + std::to_string(report.rigid_modes) + " rigid)" : "")},
+            {"points", std::to_string(report.points) + " " + kind},
+            {"training error", shown_percent(report.training_error)}};
   std::string held_out;
   for (const auto& [share, error] : report.held_out)
     held_out += (held_out.empty() ? "" : ", ") + shown_percent(error) +
                 (share < 1 ? " at " + shown(share) + " of the amplitude" : "");
   rows.emplace_back("held-out error", held_out.empty() ? "not measured" : held_out);
   if (report.exact_eigenvalues.size() > 0)
-    rows.emplace_back(
-        "softest eigenvalue",
-        shown_percent(report.fitted_eigenvalues[0] / report.exact_eigenvalues[0] - 1, 2) + " off");
-  rows.emplace_back("selection", std::to_string(report.selection.iterations) + " iterations, " +
-                                     report.selection.stop_reason);
+    rows.emplace_back("softest eigenvalue",
+                      shown_percent(report.fitted_eigenvalues[0] / report.exact_eigenvalues[0] - 1, 2) + " off");
+  rows.emplace_back("selection",
+                    std::to_string(report.selection.iterations) + " iterations, " + report.selection.stop_reason);
   rows.emplace_back("peak memory", shown_bytes(report.peak_memory));
   rows.emplace_back("model", command.model.string());
   print_rows(stdout, "reduced model of " + model.provenance.at("mesh"), rows);
@@ -195,8 +192,7 @@ void ReduceCommand::run() const {
   for (const std::string& note : report.notes) warn(note);
   if (options.target_error > 0 && report.training_error > options.target_error)
     warn("the training error is " + shown_percent(report.training_error) + ", not " +
-         shown_percent(options.target_error) + ": allow more --points than " +
-         std::to_string(options.points));
+         shown_percent(options.target_error) + ": allow more --points than " + std::to_string(options.points));
 
   watch.restart();
   {

@@ -67,33 +67,28 @@ std::vector<std::pair<Index, double>> read_nodes(const JsonFields& fields, const
 TimedSprings read_springs(const JsonFields& fields, const Body& body) {
   TimedSprings result;
   const double stiffness = fields.number("stiffness", positive, "N/m");
-  for (const auto& [node, share] : read_nodes(fields, body))
-    result.springs.emplace_back(node, share * stiffness);
+  for (const auto& [node, share] : read_nodes(fields, body)) result.springs.emplace_back(node, share * stiffness);
   result.when = read_span(fields);
   const bool target = fields.contains("target"), displacement = fields.contains("displacement"),
              path = fields.contains("path");
   if (target + displacement + path > 1)
-    throw InputError(fields.source() + ": " + fields.place() +
-                     " has several of 'target', 'displacement' and 'path'");
+    throw InputError(fields.source() + ": " + fields.place() + " has several of 'target', 'displacement' and 'path'");
   result.times = Vector::Zero(1);
   result.displacements = Points::Zero(1, 3);
   if (displacement) result.displacements = fields.point("displacement").transpose();
   if (target) {
-    if (result.springs.size() > 1)
-      fields.fail("target", "is one point for several nodes; give a 'displacement'");
+    if (result.springs.size() > 1) fields.fail("target", "is one point for several nodes; give a 'displacement'");
     result.displacements = fields.point("target").transpose() - node_positions(body).row(result.springs.front().first);
   }
   if (path) {
     const std::vector<JsonFields> keys = fields.objects("path");
-    if (keys.empty())
-      fields.fail("path", "is empty, expected at least one {\"time\": ..., \"displacement\": [...]}");
+    if (keys.empty()) fields.fail("path", "is empty, expected at least one {\"time\": ..., \"displacement\": [...]}");
     result.times.resize(static_cast<Index>(keys.size()));
     result.displacements.resize(result.times.size(), 3);
     for (std::size_t k = 0; k < keys.size(); ++k) {
       result.times[k] = keys[k].number("time", any_number, "s");
       result.displacements.row(k) = keys[k].point("displacement").transpose();
-      if (k > 0 && !(result.times[k] > result.times[k - 1]))
-        keys[k].fail("time", "is not after the one before");
+      if (k > 0 && !(result.times[k] > result.times[k - 1])) keys[k].fail("time", "is not after the one before");
     }
   }
   return result;
@@ -126,12 +121,10 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
   for (const JsonFields& fields : file.objects_if("forces")) {
     TimedLoads timed{{}, read_span(fields)};
     const Point force = fields.point("force", "N");
-    for (const auto& [node, share] : read_nodes(fields, body))
-      timed.loads.forces.push_back({node, share * force});
+    for (const auto& [node, share] : read_nodes(fields, body)) timed.loads.forces.push_back({node, share * force});
     scene.loads.push_back(std::move(timed));
   }
-  for (const JsonFields& fields : file.objects_if("springs"))
-    scene.springs.push_back(read_springs(fields, body));
+  for (const JsonFields& fields : file.objects_if("springs")) scene.springs.push_back(read_springs(fields, body));
 
   if (const auto damping = file.object_if("damping"))
     scene.damping = {damping->number_or("alpha", 0, non_negative, "1/s"),
@@ -140,8 +133,7 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
     if (solver->contains("method"))
       scene.solver = solver_named(solver->choice("method", {"newton", "bfgs", "broyden"}));
     if (solver->contains("tolerance")) scene.tolerance = solver->number("tolerance", positive);
-    if (solver->contains("max_iterations"))
-      scene.max_iterations = solver->integer("max_iterations", at_least(1));
+    if (solver->contains("max_iterations")) scene.max_iterations = solver->integer("max_iterations", at_least(1));
     if (solver->contains("beta")) scene.beta = solver->number("beta", positive);
     if (solver->contains("gamma")) scene.gamma = solver->number("gamma", positive);
   }

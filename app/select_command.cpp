@@ -1,10 +1,10 @@
 #include <app/json_report.hpp>
 #include <app/select_command.hpp>
 #include <app/terminal.hpp>
-#include <core/version.hpp>
 #include <core/check.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
+#include <core/version.hpp>
 #include <io/index_file.hpp>
 #include <io/json_fields.hpp>
 #include <io/matrix_file.hpp>
@@ -53,8 +53,7 @@ std::optional<HeldOut> read_held_out(const SelectCommand& command, Index cols) {
                      " columns, expected " + std::to_string(cols) + " as " + command.matrix.string());
   rows.b = read_rhs(command.validate_rhs, rows.A, command.validate_matrix);
   if (rows.b.norm() == 0)
-    throw InputError(command.validate_matrix.string() +
-                     ": its right-hand side is zero, to which no error is relative");
+    throw InputError(command.validate_matrix.string() + ": its right-hand side is zero, to which no error is relative");
   return rows;
 }
 
@@ -84,8 +83,8 @@ SelectionRequest selection_request(const SelectCommand& command, Index cols) {
                      " columns, expected at most --points " + std::to_string(*command.points));
   if (command.selector == "all") {
     if (request.size < most)
-      throw InputError("--selector all takes all " + std::to_string(most) +
-                       " candidates, more than --points " + std::to_string(*command.points));
+      throw InputError("--selector all takes all " + std::to_string(most) + " candidates, more than --points " +
+                       std::to_string(*command.points));
     request.size = most;
   } else if (!command.points && !command.target_error) {
     throw InputError("how many columns? expected --points, --target-error or both");
@@ -106,9 +105,7 @@ Selection select(const SelectCommand& command, const AnyProblem& problem, const 
 }
 
 Json options_json(const SelectCommand& command, const SelectionRequest& request) {
-  const auto file = [](const std::filesystem::path& path) {
-    return path.empty() ? Json() : Json(path.string());
-  };
+  const auto file = [](const std::filesystem::path& path) { return path.empty() ? Json() : Json(path.string()); };
   return {{"points", command.points ? Json(*command.points) : Json()},
           {"target_error", request.target_error},
           {"candidates", file(command.candidates)},
@@ -157,15 +154,13 @@ void print_summary(const SelectCommand& command, const DenseProblem& problem, co
             {"selected", shown_count(selection.size()) + " columns"},
             {"training error", shown_percent(report.training_error)}};
   if (w.size() > 0)
-    rows.emplace_back("weights",
-                      shown(w.minCoeff()) + " to " + shown(w.maxCoeff()) + ", sum " + shown(w.sum()));
+    rows.emplace_back("weights", shown(w.minCoeff()) + " to " + shown(w.maxCoeff()) + ", sum " + shown(w.sum()));
   if (!command.validate_matrix.empty()) rows.emplace_back("held-out error", shown_percent(held_out_error));
-  rows.insert(rows.end(),
-              {{"residual", shown(report.residual)},
-               {"KKT residual", shown(report.kkt_residual)},
-               {"selection", std::to_string(report.iterations) + " iterations, " + report.stop_reason},
-               {"columns seen", shown_count(report.columns_evaluated)},
-               {"peak memory", shown_bytes(peak_resident_memory())}});
+  rows.insert(rows.end(), {{"residual", shown(report.residual)},
+                           {"KKT residual", shown(report.kkt_residual)},
+                           {"selection", std::to_string(report.iterations) + " iterations, " + report.stop_reason},
+                           {"columns seen", shown_count(report.columns_evaluated)},
+                           {"peak memory", shown_bytes(peak_resident_memory())}});
   print_rows(stdout, "selection from " + command.matrix.string(), rows);
 }
 
@@ -198,12 +193,11 @@ void SelectCommand::run() const {
   if (!std::isfinite(report.residual) || !selection.weights.allFinite())
     throw SolverError("the selector " + selector + " found no finite weights");
   if (target_error && report.training_error > *target_error)
-    warn("the training error is " + shown_percent(report.training_error) + ", not " +
-         shown_percent(*target_error) +
+    warn("the training error is " + shown_percent(report.training_error) + ", not " + shown_percent(*target_error) +
          (points && *points < problem.cols() ? ": allow more --points than " + std::to_string(*points) : ""));
 
-  const double held_out_error = held_out ? held_out->error(selection.indices, selection.weights)
-                                         : std::numeric_limits<double>::quiet_NaN();
+  const double held_out_error =
+      held_out ? held_out->error(selection.indices, selection.weights) : std::numeric_limits<double>::quiet_NaN();
   Json json_report = report_json(*this, problem, request, selection, held_out_error);
   json_report["seconds"] = report.seconds;
   json_report["read_seconds"] = read_seconds;

@@ -20,8 +20,7 @@ Spread spread(std::vector<double> values) {
   if (values.empty()) return {nan, nan, nan};
   std::sort(values.begin(), values.end());
   const std::size_t middle = values.size() / 2;
-  const double median =
-      values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  const double median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
   return {median, values.front(), values.back()};
 }
 
@@ -41,8 +40,7 @@ std::string cell(const Spread& value, Index runs, double unit = 100) {
   return text;
 }
 
-std::vector<std::string> heading(const std::vector<SelectorSummary>& summaries,
-                                 const std::vector<PullScene>& scenes) {
+std::vector<std::string> heading(const std::vector<SelectorSummary>& summaries, const std::vector<PullScene>& scenes) {
   std::vector<std::string> names{"selector", "s", "training [%]"};
   if (!summaries.empty() && !summaries.front().held_out.empty())
     names.insert(names.end(), {"held-out [%]", "at 0.3 [%]", "at 0.1 [%]"});
@@ -53,8 +51,7 @@ std::vector<std::string> heading(const std::vector<SelectorSummary>& summaries,
 }
 
 std::vector<std::string> cells(const SelectorSummary& summary) {
-  std::vector<std::string> texts{summary.selector, std::to_string(summary.size),
-                                 cell(summary.training, summary.runs)};
+  std::vector<std::string> texts{summary.selector, std::to_string(summary.size), cell(summary.training, summary.runs)};
   for (const Spread& error : summary.held_out) texts.push_back(cell(error, summary.runs));
   texts.push_back(cell(summary.softest, summary.runs));
   for (const Spread& error : summary.trajectories) texts.push_back(cell(error, summary.runs));
@@ -85,9 +82,8 @@ std::vector<PlotSeries> lines(const std::vector<SelectorRun>& runs, const X& x, 
 std::vector<PlotSeries> convergence(const std::vector<SelectorRun>& runs, Index size) {
   std::vector<PlotSeries> series;
   for (const std::string& selector : selectors_of(runs)) {
-    const auto run = std::find_if(runs.begin(), runs.end(), [&](const SelectorRun& r) {
-      return r.selector == selector && r.size == size;
-    });
+    const auto run = std::find_if(runs.begin(), runs.end(),
+                                  [&](const SelectorRun& r) { return r.selector == selector && r.size == size; });
     if (run == runs.end() || run->report.history.size() < 2) continue;
     const auto count = static_cast<Index>(run->report.history.size());
     PlotSeries line{selector, Vector(count), Vector(count), PlotStyle::Line};
@@ -118,7 +114,8 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-constexpr std::string_view page_style = R"(body { font: 15px/1.5 system-ui, sans-serif; max-width: 64rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+constexpr std::string_view page_style =
+    R"(body { font: 15px/1.5 system-ui, sans-serif; max-width: 64rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
 figure { margin: 2rem 0; } figcaption { color: #555; } svg { max-width: 100%; height: auto; }
 .wide { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 th, td { padding: .25rem .7rem; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }
@@ -165,8 +162,7 @@ Json runs_json(const std::vector<SelectorRun>& runs) {
   Json json = Json::array();
   for (const SelectorRun& run : runs) {
     Json held_out = Json::array();
-    for (const auto& [share, error] : run.measure.held_out)
-      held_out.push_back({{"share", share}, {"error", error}});
+    for (const auto& [share, error] : run.measure.held_out) held_out.push_back({{"share", share}, {"error", error}});
     json.push_back({{"selector", run.selector},
                     {"size", run.size},
                     {"seed", run.seed},
@@ -194,8 +190,12 @@ void write_runs(const std::filesystem::path& path, const std::vector<SelectorRun
     columns.push_back({"held_out_error_" + shown(share)});
   columns.push_back({"softest_eigenvalue"});
   for (const PullScene& scene : scenes) columns.push_back({"trajectory_error " + scene.name});
-  columns.insert(columns.end(),
-                 {{"seconds", "s"}, {"processor_seconds", "s"}, {"force", "s"}, {"iterations"}, {"columns_evaluated"}, {"status"}});
+  columns.insert(columns.end(), {{"seconds", "s"},
+                                 {"processor_seconds", "s"},
+                                 {"force", "s"},
+                                 {"iterations"},
+                                 {"columns_evaluated"},
+                                 {"status"}});
   CsvTable table(columns);
   for (const SelectorRun& run : runs) {
     std::vector<std::string> row{run.selector, std::to_string(run.size), std::to_string(run.seed),
@@ -254,7 +254,8 @@ std::vector<std::pair<std::string, std::string>> draw_selector_plots(const std::
   draw("error-time.svg", "Error against the time of selection, a point for each size.",
        {.x = {.label = "selection [s]", .scale = Scale::Log},
         .y = errors,
-        .series = lines(runs, [](const SelectorSummary& s) { return s.seconds.median; }, error)});
+        .series = lines(
+            runs, [](const SelectorSummary& s) { return s.seconds.median; }, error)});
   std::vector<Index> all;
   for (const SelectorRun& run : runs) all.push_back(run.size);
   std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
@@ -266,17 +267,17 @@ std::vector<std::pair<std::string, std::string>> draw_selector_plots(const std::
   for (std::size_t k = 0; k < scenes.size(); ++k)
     draw("trajectory-" + std::to_string(k + 1) + ".svg",
          "Deviation of the motion '" + scenes[k].name + "' from the same subspace with all components.",
-         {.x = sizes, .y = {.label = "trajectory error [%]", .scale = Scale::Log},
+         {.x = sizes,
+          .y = {.label = "trajectory error [%]", .scale = Scale::Log},
           .series = lines(runs, size, [k](const SelectorSummary& s) { return 100 * s.trajectories[k].median; })});
   return drawn;
 }
 
-void write_selector_page(const std::filesystem::path& folder, const std::string& title,
-                         const std::string& description, const std::vector<SelectorSummary>& summaries,
-                         const std::vector<PullScene>& scenes,
+void write_selector_page(const std::filesystem::path& folder, const std::string& title, const std::string& description,
+                         const std::vector<SelectorSummary>& summaries, const std::vector<PullScene>& scenes,
                          const std::vector<std::pair<std::string, std::string>>& plots) {
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
-                     escaped(title) + "</title>\n<style>\n" + std::string(page_style) + "</style>\n</head>\n<body>\n<h1>" +
+  std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + escaped(title) +
+                     "</title>\n<style>\n" + std::string(page_style) + "</style>\n</head>\n<body>\n<h1>" +
                      escaped(title) + "</h1>\n<p>" + escaped(description) + "</p>\n";
   for (const auto& [name, caption] : plots) {
     const std::string drawing = read_file(folder / name);
@@ -290,8 +291,10 @@ void write_selector_page(const std::filesystem::path& folder, const std::string&
   };
   page += "<div class=\"wide\">\n<table>\n<thead>" + row(heading(summaries, scenes), "th") + "</thead>\n<tbody>\n";
   for (const SelectorSummary& summary : summaries) page += row(cells(summary), "td");
-  page += "</tbody>\n</table>\n</div>\n<p>Medians over seeds, the range in brackets. The softest eigenvalue is that of the fitted "
-          "stiffness at rest, relative to the exact one. Processor time is that of all threads.</p>\n</body>\n</html>\n";
+  page +=
+      "</tbody>\n</table>\n</div>\n<p>Medians over seeds, the range in brackets. The softest eigenvalue is that of the "
+      "fitted "
+      "stiffness at rest, relative to the exact one. Processor time is that of all threads.</p>\n</body>\n</html>\n";
   const ExitGuard guard;
   write_file(folder / "index.html", page);
 }

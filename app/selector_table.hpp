@@ -52,9 +52,8 @@ std::vector<std::pair<std::string, std::string>> draw_selector_plots(const std::
                                                                      const std::vector<PullScene>& scenes);
 
 /// One page with the plots, drawn into it, and the table.
-void write_selector_page(const std::filesystem::path& folder, const std::string& title,
-                         const std::string& description, const std::vector<SelectorSummary>& summaries,
-                         const std::vector<PullScene>& scenes,
+void write_selector_page(const std::filesystem::path& folder, const std::string& title, const std::string& description,
+                         const std::vector<SelectorSummary>& summaries, const std::vector<PullScene>& scenes,
                          const std::vector<std::pair<std::string, std::string>>& plots);
 
 }  // namespace supple

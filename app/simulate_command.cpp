@@ -6,9 +6,9 @@
 #include <app/surface.hpp>
 #include <app/terminal.hpp>
 #include <app/trajectory.hpp>
-#include <core/version.hpp>
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
+#include <core/version.hpp>
 #include <io/csv.hpp>
 #include <io/plot.hpp>
 #include <io/vtu_writer.hpp>
@@ -39,20 +39,16 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
     if (!scene.step) scene.step = pluck.step;
     if (scene.track.empty()) scene.track = pluck.track;
   }
-  if (!(*scene.duration > 0))
-    throw InputError("the duration is " + shown(*scene.duration) + " s, expected > 0");
+  if (!(*scene.duration > 0)) throw InputError("the duration is " + shown(*scene.duration) + " s, expected > 0");
   if (!(*scene.step > 0)) throw InputError("the step is " + shown(*scene.step) + " s, expected > 0");
   const double steps = std::max(1.0, std::ceil(*scene.duration / *scene.step - 1e-6));
   if (steps > 1e8) throw InputError(shown(steps) + " steps are more than the 1e8 that a run may have");
 
-  SimulationOptions options{
-      .step = *scene.step, .num_steps = static_cast<Index>(steps), .every = 1, .newmark = {}};
+  SimulationOptions options{.step = *scene.step, .num_steps = static_cast<Index>(steps), .every = 1, .newmark = {}};
   options.every = scene.every.value_or((options.num_steps + 99) / 100);
-  if (options.every < 1)
-    throw InputError("--every is " + std::to_string(options.every) + ", expected at least 1");
+  if (options.every < 1) throw InputError("--every is " + std::to_string(options.every) + ", expected at least 1");
   options.newmark.damping = scene.damping.value_or(damping(model.body));
-  options.newmark.solver =
-      scene.solver.value_or(command.full ? NonlinearSolver::Newton : NonlinearSolver::Bfgs);
+  options.newmark.solver = scene.solver.value_or(command.full ? NonlinearSolver::Newton : NonlinearSolver::Bfgs);
   if (command.full && options.newmark.solver != NonlinearSolver::Newton) {
     if (command.solver)
       throw InputError("--solver " + *command.solver + " is for reduced systems; --full runs with newton");
@@ -79,25 +75,22 @@ struct Effort {
       if (std::isfinite(step.residual)) worst_residual = std::max(worst_residual, step.residual);
       missed += step.status != Status::Converged;
     }
-    if (run.integration_seconds > 0)
-      steps_per_second = static_cast<double>(run.num_steps()) / run.integration_seconds;
+    if (run.integration_seconds > 0) steps_per_second = static_cast<double>(run.num_steps()) / run.integration_seconds;
   }
 };
 
-Trajectory trajectory_of(const SimulateCommand& command, const Simulation& run,
-                         const SimulationOptions& options) {
-  Trajectory trajectory{
-      .reduced = !command.full,
-      .model = std::filesystem::absolute(command.model).lexically_normal(),
-      .model_checksum = header_checksum(command.model),
-      .step = options.step,
-      .steps_per_second = Effort(run).steps_per_second,
-      .time = Eigen::Map<const Vector>(run.times.data(), static_cast<Index>(run.times.size())),
-      .kinetic = {},
-      .elastic = {},
-      .work = {},
-      .u = run.u,
-      .v = run.v};
+Trajectory trajectory_of(const SimulateCommand& command, const Simulation& run, const SimulationOptions& options) {
+  Trajectory trajectory{.reduced = !command.full,
+                        .model = std::filesystem::absolute(command.model).lexically_normal(),
+                        .model_checksum = header_checksum(command.model),
+                        .step = options.step,
+                        .steps_per_second = Effort(run).steps_per_second,
+                        .time = Eigen::Map<const Vector>(run.times.data(), static_cast<Index>(run.times.size())),
+                        .kinetic = {},
+                        .elastic = {},
+                        .work = {},
+                        .u = run.u,
+                        .v = run.v};
   for (Vector* values : {&trajectory.kinetic, &trajectory.elastic, &trajectory.work})
     values->resize(trajectory.num_frames());
   for (Index f = 0; f < trajectory.num_frames(); ++f) {
@@ -113,8 +106,8 @@ void write_energies(const std::filesystem::path& path, const Simulation& run) {
   CsvTable table{{"time", "s"},  {"kinetic", "J"}, {"elastic", "J"}, {"work", "J"},
                  {"iterations"}, {"refreshes"},    {"residual"},     {"status"}};
   for (const StepRecord& step : run.steps)
-    table.add_row(step.time, step.kinetic, step.elastic, step.work, step.iterations, step.refreshes,
-                  step.residual, to_string(step.status));
+    table.add_row(step.time, step.kinetic, step.elastic, step.work, step.iterations, step.refreshes, step.residual,
+                  to_string(step.status));
   const ExitGuard guard;
   write_csv(path, table);
 }
@@ -122,8 +115,7 @@ void write_energies(const std::filesystem::path& path, const Simulation& run) {
 void write_tracked(const std::filesystem::path& path, const Scene& scene, const Simulation& run) {
   std::vector<CsvTable::Column> columns{{"time", "s"}};
   for (const Index node : scene.track)
-    for (const char* axis : {"x", "y", "z"})
-      columns.push_back({"u" + std::string(axis) + std::to_string(node), "m"});
+    for (const char* axis : {"x", "y", "z"}) columns.push_back({"u" + std::string(axis) + std::to_string(node), "m"});
   CsvTable table(columns);
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     std::vector<std::string> row{exact(run.steps[k].time)};
@@ -179,9 +171,8 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["every"] = options.every;
   json["tracked"] = Json::array();
   for (std::size_t j = 0; j < scene.track.size(); ++j)
-    json["tracked"].push_back(
-        {{"node", scene.track[j]},
-         {"largest_displacement", run.tracked.middleCols<3>(3 * j).rowwise().norm().maxCoeff()}});
+    json["tracked"].push_back({{"node", scene.track[j]},
+                               {"largest_displacement", run.tracked.middleCols<3>(3 * j).rowwise().norm().maxCoeff()}});
   json["threads"] = num_threads();
   return json;
 }
@@ -192,20 +183,18 @@ void print_summary(const SimulateCommand& command, const Scene& scene, const Sim
       {"scene", scene.description},
       {"system", (command.full ? "full, " : "reduced, ") + shown_count(run.unknowns) + " unknowns"},
       {"steps", shown_count(run.num_steps()) + " of " + shown(options.step, 3) + " s"},
-      {"speed", shown(effort.steps_per_second) + " steps/s, " +
-                    shown(effort.steps_per_second * options.step, 3) + " times real time"},
+      {"speed", shown(effort.steps_per_second) + " steps/s, " + shown(effort.steps_per_second * options.step, 3) +
+                    " times real time"},
       {"iterations", shown(effort.mean_iterations, 3) + " a step, " + std::to_string(effort.most_iterations) +
                          " at most; " + shown_count(effort.refreshes) + " tangents"},
-      {"residual",
-       "at most " + shown(effort.worst_residual, 2) + ", asked for " + shown(options.newmark.tolerance)}};
+      {"residual", "at most " + shown(effort.worst_residual, 2) + ", asked for " + shown(options.newmark.tolerance)}};
   if (reconstruction > 0)
-    rows.emplace_back(
-        "reconstruction",
-        shown(1e3 * reconstruction / static_cast<double>(run.times.size()), 3) + " ms a frame of all nodes");
+    rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(run.times.size()), 3) +
+                                            " ms a frame of all nodes");
   for (std::size_t j = 0; j < scene.track.size(); ++j)
-    rows.emplace_back("node " + std::to_string(scene.track[j]),
-                      "displaced by at most " +
-                          shown(run.tracked.middleCols<3>(3 * j).rowwise().norm().maxCoeff(), 3) + " m");
+    rows.emplace_back(
+        "node " + std::to_string(scene.track[j]),
+        "displaced by at most " + shown(run.tracked.middleCols<3>(3 * j).rowwise().norm().maxCoeff(), 3) + " m");
   if (!command.output.empty()) rows.emplace_back("results", command.output.string());
   print_rows(stdout, "simulation of " + command.model.string(), rows);
 }
@@ -223,8 +212,8 @@ void SimulateCommand::run() const {
   times.finish("read model");
 
   const Progress progress = progress_bar();
-  const Simulation result = full ? simulate_full(reduced.body, what, options, progress)
-                                 : simulate_reduced(reduced, what, options, progress);
+  const Simulation result =
+      full ? simulate_full(reduced.body, what, options, progress) : simulate_reduced(reduced, what, options, progress);
   times.add("setup", result.setup_seconds);
   times.add("time steps", result.integration_seconds);
   times.add("energies and frames", times.current() - result.setup_seconds - result.integration_seconds);
@@ -258,14 +247,13 @@ void SimulateCommand::run() const {
   }
   write_json(json, report);
   if (!result.finite())
-    throw SolverError(
-        "step " + std::to_string(result.num_steps()) +
-        " (t = " + shown(static_cast<double>(result.num_steps()) * options.step) +
-        " s) is not finite; the results end before it. A shorter --step or --solver newton may help");
+    throw SolverError("step " + std::to_string(result.num_steps()) +
+                      " (t = " + shown(static_cast<double>(result.num_steps()) * options.step) +
+                      " s) is not finite; the results end before it. A shorter --step or --solver newton may help");
   if (effort.missed > 0)
-    warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) +
-         " steps missed the tolerance " + shown(options.newmark.tolerance) + " (worst residual " +
-         shown(effort.worst_residual, 2) + "); try a shorter --step or --solver newton");
+    warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) + " steps missed the tolerance " +
+         shown(options.newmark.tolerance) + " (worst residual " + shown(effort.worst_residual, 2) +
+         "); try a shorter --step or --solver newton");
 }
 
 }  // namespace supple

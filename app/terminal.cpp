@@ -25,8 +25,8 @@ Progress progress_bar() {
     const double safe = std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0;
     std::string bar(width, ' ');
     std::fill_n(bar.begin(), static_cast<int>(safe * width), '=');
-    std::fprintf(stderr, "\r%-20.*s [%s] %3.0f %%\033[K", static_cast<int>(stage.size()), stage.data(),
-                 bar.c_str(), 100 * safe);
+    std::fprintf(stderr, "\r%-20.*s [%s] %3.0f %%\033[K", static_cast<int>(stage.size()), stage.data(), bar.c_str(),
+                 100 * safe);
     line_is_shown = true;
   };
 }
@@ -83,8 +83,7 @@ std::string shown_percent(double share, int digits) {
 
 std::string shown_count(long long count) {
   std::string text = std::to_string(count);
-  for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0 && text[at - 1] != '-';
-       at -= 3)
+  for (std::ptrdiff_t at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0 && text[at - 1] != '-'; at -= 3)
     text.insert(at, 1, ' ');
   return text;
 }

@@ -15,12 +15,10 @@ namespace {
 constexpr const char* format_name = "supple trajectory";
 constexpr const char* format_version = "1";
 
-Vector reconstruct(const Trajectory& trajectory, const ReducedModel& model, const RowMatrix& frames,
-                   Index frame) {
+Vector reconstruct(const Trajectory& trajectory, const ReducedModel& model, const RowMatrix& frames, Index frame) {
   const Vector coordinates = frames.row(frame).transpose();
   if (!trajectory.reduced) return coordinates;
-  return std::visit([&](const auto& subspace) -> Vector { return subspace->reconstruct(coordinates); },
-                    model.subspace);
+  return std::visit([&](const auto& subspace) -> Vector { return subspace->reconstruct(coordinates); }, model.subspace);
 }
 
 }  // namespace
@@ -49,8 +47,7 @@ void save_trajectory(const std::filesystem::path& path, const Trajectory& trajec
     file.add("q_dot", trajectory.v);
   } else {
     const auto add = [&](const char* name, const RowMatrix& frames) {
-      const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> single =
-          frames.cast<float>();
+      const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> single = frames.cast<float>();
       file.add(name, std::span<const float>(single.data(), static_cast<std::size_t>(single.size())),
                {frames.rows(), frames.cols() / 3, 3});
     };
@@ -68,8 +65,7 @@ Trajectory load_trajectory(const std::filesystem::path& path) {
   if (!file.metadata().contains("format") || file.metadata("format") != format_name)
     throw fail("this is not a trajectory of Supple");
   if (file.metadata("format_version") != format_version)
-    throw fail("the trajectory has version " + file.metadata("format_version") + ", expected " +
-               format_version);
+    throw fail("the trajectory has version " + file.metadata("format_version") + ", expected " + format_version);
   const auto number = [&](const char* key) {
     const std::string& text = file.metadata(key);
     double value = 0;
@@ -97,8 +93,7 @@ Trajectory load_trajectory(const std::filesystem::path& path) {
     const auto read = [&](const char* name) -> RowMatrix {
       const auto values = file.values<float>(name, {frames, TensorFile::any, 3});
       using Single = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-      return Eigen::Map<const Single>(values.data(), frames, static_cast<Index>(values.size()) / frames)
-          .cast<double>();
+      return Eigen::Map<const Single>(values.data(), frames, static_cast<Index>(values.size()) / frames).cast<double>();
     };
     trajectory.u = read("displacement");
     trajectory.v = read("velocity");
@@ -138,10 +133,8 @@ std::string header_checksum(const std::filesystem::path& path) {
     file.read(text.data(), static_cast<std::streamsize>(length));
     const nlohmann::json header = nlohmann::json::parse(text, nullptr, false);
     if (file && header.is_object())
-      if (const auto metadata = header.find("__metadata__");
-          metadata != header.end() && metadata->is_object())
-        if (const auto sum = metadata->find("supple.xxh3"); sum != metadata->end() && sum->is_string())
-          return *sum;
+      if (const auto metadata = header.find("__metadata__"); metadata != header.end() && metadata->is_object())
+        if (const auto sum = metadata->find("supple.xxh3"); sum != metadata->end() && sum->is_string()) return *sum;
   }
   throw InputError(path.string() + ": this is not a model of Supple");
 }

@@ -2,8 +2,6 @@
 // Venant–Kirchhoff chosen when compiling. Medians of interleaved rounds, so that a busy machine is busy for all.
 //
 //   $ benchmark_materials
-#include "../examples/gent.hpp"
-
 #include <core/stopwatch.hpp>
 #include <io/builtin_meshes.hpp>
 #include <io/node_sets.hpp>
@@ -12,6 +10,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+
+#include "../examples/gent.hpp"
 
 namespace {
 
@@ -68,8 +68,8 @@ int main() {
   const auto add = [&]<typename Model>(std::string name, std::shared_ptr<const Model> force) {
     const auto system = std::make_shared<const ReducedSystem<Model, NodalBasis>>(
         force, subspace, model.indices, model.weights, model.rest_stiffness, nodal_mass(model.body));
-    entries.push_back({std::move(name), [system, &q, &f] { system->force(q, f); },
-                       [system, &q, &K] { system->stiffness(q, K); }});
+    entries.push_back(
+        {std::move(name), [system, &q, &f] { system->force(q, f); }, [system, &q, &K] { system->stiffness(q, K); }});
   };
   const auto add_law = [&](const std::string& name, const MaterialLaw& law) {
     const std::vector<double> values = law.from(moduli);

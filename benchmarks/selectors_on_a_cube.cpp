@@ -44,27 +44,22 @@ int main(int argc, char** argv) {
       seconds.push_back(c.report.seconds);
       evaluated.push_back(static_cast<double>(c.report.columns_evaluated));
     }
-    std::printf("%s,%ld,%.0f,%.3e,%.3e,%.3f,%.0f\n", name.c_str(), static_cast<long>(s), median(size),
-                median(error), median(held_out_error), median(seconds), median(evaluated));
+    std::printf("%s,%ld,%.0f,%.3e,%.3e,%.3f,%.0f\n", name.c_str(), static_cast<long>(s), median(size), median(error),
+                median(held_out_error), median(seconds), median(evaluated));
     std::fflush(stdout);
   };
   for (Index s : sizes) {
     for (std::string_view name : selector_names)
       if (name != "all")
-        report(std::string(name), s,
-               [&](std::uint64_t seed) { return select_by_name(name, training, s, seed); });
+        report(std::string(name), s, [&](std::uint64_t seed) { return select_by_name(name, training, s, seed); });
     report("nn-sp 10 iterations", s,
            [&](std::uint64_t seed) { return NnSp{.max_iterations = 10, .seed = seed}(training, s); });
-    report("greedy T_s 10", s, [&](std::uint64_t seed) {
-      return GreedyCubature{.subset_groups = 10, .seed = seed}(training, s);
-    });
-    report("nn-omp 1.3", s,
-           [&](std::uint64_t seed) { return NnOmp{.overshoot = 1.3, .seed = seed}(training, s); });
+    report("greedy T_s 10", s,
+           [&](std::uint64_t seed) { return GreedyCubature{.subset_groups = 10, .seed = seed}(training, s); });
+    report("nn-omp 1.3", s, [&](std::uint64_t seed) { return NnOmp{.overshoot = 1.3, .seed = seed}(training, s); });
     report("sketched nn-sp", s, [&](std::uint64_t seed) {
       return Sketched<NnSp>{{.seed = seed}, 0, seed}(training, s);
     });
-    report("sketched nn-omp", s, [&](std::uint64_t seed) {
-      return Sketched<NnOmp>{{}, 0, seed}(training, s);
-    });
+    report("sketched nn-omp", s, [&](std::uint64_t seed) { return Sketched<NnOmp>{{}, 0, seed}(training, s); });
   }
 }

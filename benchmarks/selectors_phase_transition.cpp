@@ -39,8 +39,7 @@ bool recovers(std::string_view name, const Signal& signal, Index s, std::uint64_
   const SelectionRequest request(s);
   // The lazy methods see all columns in each iteration here, and have time.
   const Selection c =
-      name == "nn-sp"
-          ? NnSp{.max_iterations = 200, .candidates_per_size = all, .seed = seed}(signal.problem, request)
+      name == "nn-sp" ? NnSp{.max_iterations = 200, .candidates_per_size = all, .seed = seed}(signal.problem, request)
       : name == "nn-htp"
           ? NnHtp{.max_iterations = 200, .candidates_per_size = all, .seed = seed}(signal.problem, request)
           : select_by_name(name, signal.problem, request, seed);
@@ -66,9 +65,8 @@ int main(int argc, char** argv) {
         });
         const auto count = std::count(recovered.begin(), recovered.end(), 1);
         std::printf("%s,%s,%ld,%ld,%ld,%ld,%ld\n", std::string(name).c_str(),
-                    signs == Signs::Any ? "signed" : "non-negative", static_cast<long>(rows),
-                    static_cast<long>(cols), static_cast<long>(s), static_cast<long>(trials),
-                    static_cast<long>(count));
+                    signs == Signs::Any ? "signed" : "non-negative", static_cast<long>(rows), static_cast<long>(cols),
+                    static_cast<long>(s), static_cast<long>(trials), static_cast<long>(count));
         std::fflush(stdout);
         if (count == 0) break;
       }

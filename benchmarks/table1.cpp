@@ -111,8 +111,7 @@ int main(int argc, char** argv) {
            {"softest_exact", report.exact_eigenvalues[0]},
            {"notes", report.notes}};
   for (const auto& [stage, seconds] : report.seconds) out["seconds"][stage] = seconds;
-  for (const auto& [share, error] : report.held_out)
-    out["held_out"][std::to_string(share).substr(0, 3)] = error;
+  for (const auto& [share, error] : report.held_out) out["held_out"][std::to_string(share).substr(0, 3)] = error;
 
   const double diagonal = bounding_box(mesh.nodes).diagonal();
   ReducedModel unfitted = model;

@@ -8,8 +8,8 @@
 #include <io/builtin_meshes.hpp>
 #include <io/mesh_reader.hpp>
 #include <io/node_sets.hpp>
-#include <physics/full_system.hpp>
 #include <physics/body.hpp>
+#include <physics/full_system.hpp>
 #include <reduction/modal_derivatives.hpp>
 #include <reduction/skinning_modes.hpp>
 
@@ -39,13 +39,11 @@ int main(int argc, char** argv) {
   const std::vector<Index> fixed = select_nodes(mesh.nodes, fix);
   const Solid solid = isotropic_solid(mesh, {.young = 1e5, .poisson = 0.4}, fixed, law);
 
-  nlohmann::json out{
-      {"mesh", mesh_name}, {"nodes", mesh.num_nodes()}, {"tets", mesh.num_tets()}, {"r", num_modes}};
+  nlohmann::json out{{"mesh", mesh_name}, {"nodes", mesh.num_nodes()}, {"tets", mesh.num_tets()}, {"r", num_modes}};
   with_force_model(solid, [&]<typename Model>(const std::shared_ptr<const Model>& model) {
     const FullSystem<Model> system(model, solid.nodal_mass(), fixed);
     const RestState object = rest_state(system);
-    const Index rigid =
-        find_free_components(object.stencils, object.stencil_size, object.numbering).num_rigid_modes();
+    const Index rigid = find_free_components(object.stencils, object.stencil_size, object.numbering).num_rigid_modes();
 
     Stopwatch watch;
     const VibrationModes modes = vibration_modes(system, {.num_modes = rigid + num_modes});

@@ -27,8 +27,8 @@ OutputFile::OutputFile(const std::filesystem::path& path) : path_(follow_links(p
     throw InputError(path.string() + ": cannot be written: it is a folder");
   static std::atomic<unsigned> serial{0};
   do {
-    temporary_ = path_.parent_path() / ("." + path_.filename().string() + "." + std::to_string(::getpid()) +
-                                        "-" + std::to_string(serial++) + ".tmp");
+    temporary_ = path_.parent_path() / ("." + path_.filename().string() + "." + std::to_string(::getpid()) + "-" +
+                                        std::to_string(serial++) + ".tmp");
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor_ < 0 && errno == EEXIST);
   if (descriptor_ < 0) fail("create");

@@ -122,10 +122,10 @@ inline Pack atan2(const Pack& y, const Pack& x) {
   const Lanes t = (middle ? low - high : low) / (denominator == 0 ? Lanes{} + 1 : denominator);
   const Lanes z = t * t;
   const Lanes z2 = z * z, z4 = z2 * z2;
-  const Lanes p0 = (-0x1.5555555555555p-2 + z * 0x1.999999999934cp-3) +
-                   z2 * (-0x1.2492492436201p-3 + z * 0x1.c71c71853d7c8p-4);
-  const Lanes p4 = (-0x1.745d0b28a7649p-4 + z * 0x1.3b12630643e8ap-4) +
-                   z2 * (-0x1.10fa77b104ae8p-4 + z * 0x1.dfe6497394f40p-5);
+  const Lanes p0 =
+      (-0x1.5555555555555p-2 + z * 0x1.999999999934cp-3) + z2 * (-0x1.2492492436201p-3 + z * 0x1.c71c71853d7c8p-4);
+  const Lanes p4 =
+      (-0x1.745d0b28a7649p-4 + z * 0x1.3b12630643e8ap-4) + z2 * (-0x1.10fa77b104ae8p-4 + z * 0x1.dfe6497394f40p-5);
   const Lanes p8 = (-0x1.a0999c2994d42p-5 + z * 0x1.4162bf84bf0bfp-5) + z2 * -0x1.3a31b0297d745p-6;
   const Lanes atan_t = t + t * (z * (p0 + z4 * (p4 + z4 * p8)));
   Lanes angle = middle ? quarter + (atan_t + rest) : atan_t;

@@ -21,8 +21,7 @@ void parallel_for(Index count, const std::function<void(Index)>& piece);
 /// Calls body(begin, end) on consecutive ranges of at most `grain` of 0 … count − 1.
 template <typename Body>
 void parallel_ranges(Index count, Index grain, const Body& body) {
-  parallel_for((count + grain - 1) / grain,
-               [&](Index k) { body(k * grain, std::min(count, (k + 1) * grain)); });
+  parallel_for((count + grain - 1) / grain, [&](Index k) { body(k * grain, std::min(count, (k + 1) * grain)); });
 }
 
 }  // namespace supple

@@ -19,8 +19,7 @@ class Random {
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
   /// Uniform in 0 … count − 1; count ≥ 1.
   Index below(Index count) {
-    return static_cast<Index>(
-        (static_cast<Wide>(engine_()) * static_cast<std::uint64_t>(count)) >> 64);
+    return static_cast<Index>((static_cast<Wide>(engine_()) * static_cast<std::uint64_t>(count)) >> 64);
   }
   /// Standard normal (Box and Muller 1958).
   double normal() {
@@ -32,8 +31,7 @@ class Random {
   template <typename Item>
   std::vector<Item> sample(std::vector<Item> items, Index count) {
     count = std::min<Index>(count, static_cast<Index>(items.size()));
-    for (Index k = 0; k < count; ++k)
-      std::swap(items[k], items[k + below(static_cast<Index>(items.size()) - k)]);
+    for (Index k = 0; k < count; ++k) std::swap(items[k], items[k + below(static_cast<Index>(items.size()) - k)]);
     items.resize(count);
     return items;
   }

@@ -74,7 +74,8 @@ Recording::Handle Recording::simplified(Operation operation, Handle a, Handle b)
       if (is_constant(a)) return constant(-nodes_[a].value);
       if (negated(a)) return nodes_[a].arguments[0];
       return -1;
-    default: return -1;
+    default:
+      return -1;
   }
 }
 
@@ -108,21 +109,30 @@ Recording::Handle Recording::local_derivative(Handle node, int argument, Handle 
     return apply(Operation::WherePositive, condition, constant(then), constant(otherwise));
   };
   switch (operation) {
-    case Operation::Add: return adjoint;
-    case Operation::Subtract: return argument == 0 ? adjoint : apply(Operation::Negate, adjoint);
-    case Operation::Multiply: return times(argument == 0 ? b : a);
+    case Operation::Add:
+      return adjoint;
+    case Operation::Subtract:
+      return argument == 0 ? adjoint : apply(Operation::Negate, adjoint);
+    case Operation::Multiply:
+      return times(argument == 0 ? b : a);
     case Operation::Divide:
       return argument == 0 ? over(b) : apply(Operation::Negate, apply(Operation::Divide, times(node), b));
-    case Operation::Negate: return apply(Operation::Negate, adjoint);
-    case Operation::Sqrt: return apply(Operation::Divide, times(constant(0.5)), node);
-    case Operation::Cbrt: return apply(Operation::Divide, times(node), product(constant(3), a));
-    case Operation::Exp: return times(node);
-    case Operation::Log: return over(a);
+    case Operation::Negate:
+      return apply(Operation::Negate, adjoint);
+    case Operation::Sqrt:
+      return apply(Operation::Divide, times(constant(0.5)), node);
+    case Operation::Cbrt:
+      return apply(Operation::Divide, times(node), product(constant(3), a));
+    case Operation::Exp:
+      return times(node);
+    case Operation::Log:
+      return over(a);
     case Operation::Acos: {
       const Handle sine = apply(Operation::Sqrt, apply(Operation::Subtract, constant(1), product(a, a)));
       return apply(Operation::Negate, over(sine));
     }
-    case Operation::Abs: return times(choose(a, 1, -1));
+    case Operation::Abs:
+      return times(choose(a, 1, -1));
     case Operation::Atan2: {  // of y = a, x = b
       const Handle square = apply(Operation::Add, product(a, a), product(b, b));
       const Handle part = apply(Operation::Divide, times(argument == 0 ? b : a), square);
@@ -144,7 +154,8 @@ Recording::Handle Recording::local_derivative(Handle node, int argument, Handle 
       return argument == 1 ? apply(Operation::WherePositive, a, adjoint, there)
                            : apply(Operation::WherePositive, a, there, adjoint);
     }
-    default: return -1;
+    default:
+      return -1;
   }
 }
 
@@ -208,15 +219,15 @@ Program::Program(const Recording& recording, std::span<const Recording::Handle> 
     for (int i = 0; i < 3; ++i) {
       const Handle x = arguments[i];
       const bool repeated = std::find(arguments.begin(), arguments.begin() + i, x) != arguments.begin() + i;
-      const bool temporary = x >= 0 && nodes[x].operation != Operation::Constant &&
-                             nodes[x].operation != Operation::Input;
+      const bool temporary =
+          x >= 0 && nodes[x].operation != Operation::Constant && nodes[x].operation != Operation::Input;
       if (temporary && last_use[x] == k && !repeated) free_slots.push_back(slot_of[x]);
     }
     slot_of[k] = to;
     instructions_.push_back({operation, static_cast<Slot>(to), from[0], from[1], from[2], value});
   }
-  require(count <= max_slots, "a recorded formula keeps " + std::to_string(count) + " values at once, expected at most " +
-                                  std::to_string(max_slots));
+  require(count <= max_slots, "a recorded formula keeps " + std::to_string(count) +
+                                  " values at once, expected at most " + std::to_string(max_slots));
   for (const Handle output : outputs) outputs_.push_back(static_cast<Slot>(slot_of[output]));
 }
 

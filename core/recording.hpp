@@ -16,10 +16,25 @@
 namespace supple {
 
 enum class Operation : std::uint8_t {
-  Input, Constant,
-  Add, Subtract, Multiply, Divide, Negate,
-  MultiplyAdd, MultiplySubtract, NegateMultiplyAdd,  ///< a b + c, a b − c, c − a b: made by Program, not recorded
-  Sqrt, Cbrt, Exp, Log, Acos, Abs, Atan2, Min, Max,
+  Input,
+  Constant,
+  Add,
+  Subtract,
+  Multiply,
+  Divide,
+  Negate,
+  MultiplyAdd,
+  MultiplySubtract,
+  NegateMultiplyAdd,  ///< a b + c, a b − c, c − a b: made by Program, not recorded
+  Sqrt,
+  Cbrt,
+  Exp,
+  Log,
+  Acos,
+  Abs,
+  Atan2,
+  Min,
+  Max,
   Power,         ///< a to a constant exponent
   WherePositive  ///< b where a > 0, else c
 };
@@ -164,27 +179,66 @@ void Program::run(const Real* inputs, Real* outputs) const {
     const Real &a = slots[i.a], &b = slots[i.b], &c = slots[i.c];
     Real& result = slots[i.result];
     switch (i.operation) {
-      case Operation::Add: result = a + b; break;
-      case Operation::Subtract: result = a - b; break;
-      case Operation::Multiply: result = a * b; break;
-      case Operation::Divide: result = a / b; break;
-      case Operation::Negate: result = -a; break;
-      case Operation::MultiplyAdd: result = a * b + c; break;
-      case Operation::MultiplySubtract: result = a * b - c; break;
-      case Operation::NegateMultiplyAdd: result = c - a * b; break;
-      case Operation::Sqrt: result = sqrt(a); break;
-      case Operation::Cbrt: result = cbrt(a); break;
-      case Operation::Exp: result = exp(a); break;
-      case Operation::Log: result = log(a); break;
-      case Operation::Acos: result = acos(a); break;
-      case Operation::Abs: result = abs(a); break;
-      case Operation::Atan2: result = atan2(a, b); break;
-      case Operation::Min: result = min(a, b); break;
-      case Operation::Max: result = max(a, b); break;
-      case Operation::Power: result = pow(a, i.exponent); break;
-      case Operation::WherePositive: result = where_positive(a, b, c); break;
+      case Operation::Add:
+        result = a + b;
+        break;
+      case Operation::Subtract:
+        result = a - b;
+        break;
+      case Operation::Multiply:
+        result = a * b;
+        break;
+      case Operation::Divide:
+        result = a / b;
+        break;
+      case Operation::Negate:
+        result = -a;
+        break;
+      case Operation::MultiplyAdd:
+        result = a * b + c;
+        break;
+      case Operation::MultiplySubtract:
+        result = a * b - c;
+        break;
+      case Operation::NegateMultiplyAdd:
+        result = c - a * b;
+        break;
+      case Operation::Sqrt:
+        result = sqrt(a);
+        break;
+      case Operation::Cbrt:
+        result = cbrt(a);
+        break;
+      case Operation::Exp:
+        result = exp(a);
+        break;
+      case Operation::Log:
+        result = log(a);
+        break;
+      case Operation::Acos:
+        result = acos(a);
+        break;
+      case Operation::Abs:
+        result = abs(a);
+        break;
+      case Operation::Atan2:
+        result = atan2(a, b);
+        break;
+      case Operation::Min:
+        result = min(a, b);
+        break;
+      case Operation::Max:
+        result = max(a, b);
+        break;
+      case Operation::Power:
+        result = pow(a, i.exponent);
+        break;
+      case Operation::WherePositive:
+        result = where_positive(a, b, c);
+        break;
       case Operation::Input:
-      case Operation::Constant: break;
+      case Operation::Constant:
+        break;
     }
   }
   for (std::size_t k = 0; k < outputs_.size(); ++k) outputs[k] = slots[outputs_[k]];

@@ -40,8 +40,7 @@ std::string array_key(std::string_view name) {
 std::string checksum(std::span<const std::byte> bytes) {
   std::uint64_t hash = XXH3_64bits(bytes.data(), bytes.size());
   std::string hex(16, '0');
-  for (auto digit = hex.rbegin(); digit != hex.rend(); ++digit, hash >>= 4)
-    *digit = "0123456789abcdef"[hash & 15];
+  for (auto digit = hex.rbegin(); digit != hex.rend(); ++digit, hash >>= 4) *digit = "0123456789abcdef"[hash & 15];
   return hex;
 }
 
@@ -125,8 +124,7 @@ void TensorFileWriter::write(const std::filesystem::path& path) const {
     text[key] = value;
   }
   std::size_t offset = 0;
-  const auto place = [&](const std::string& name, DType dtype, const std::vector<Index>& shape,
-                         std::size_t size) {
+  const auto place = [&](const std::string& name, DType dtype, const std::vector<Index>& shape, std::size_t size) {
     header[name] = {{"dtype", to_string(dtype)}, {"shape", shape}, {"data_offsets", {offset, offset + size}}};
     offset += size;
   };
@@ -169,8 +167,7 @@ struct TensorFile::Mapping {
     const bool known = ::fstat(descriptor, &status) == 0;
     const bool regular = known && S_ISREG(status.st_mode);
     if (regular && status.st_size > 0)
-      address =
-          ::mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_SHARED, descriptor, 0);
+      address = ::mmap(nullptr, static_cast<std::size_t>(status.st_size), PROT_READ, MAP_SHARED, descriptor, 0);
     const int error = errno;
     ::close(descriptor);
     errno = error;
@@ -196,8 +193,7 @@ TensorFile::TensorFile(const std::filesystem::path& path, Checksums checksums)
   const auto refuse = [&](const std::string& reason) { throw InputError(path_.string() + ": " + reason); };
   const std::span<const std::byte> file = mapping_->bytes;
   std::uint64_t head_size = 0;
-  if (file.size() < 10)
-    refuse("not a safetensors file: it has only " + std::to_string(file.size()) + " bytes");
+  if (file.size() < 10) refuse("not a safetensors file: it has only " + std::to_string(file.size()) + " bytes");
   std::memcpy(&head_size, file.data(), 8);
   if (file[8] != std::byte{'{'} || head_size > largest_header)
     refuse("not a safetensors file: expected the length of a JSON header and '{'");
@@ -244,9 +240,8 @@ TensorFile::TensorFile(const std::filesystem::path& path, Checksums checksums)
       refuse("array " + shown(array) + ": " + reason);
     };
     const auto naturals = [](const Json& list) {
-      return list.is_array() && std::ranges::all_of(list, [](const Json& i) {
-               return i.is_number_unsigned() && i <= INT64_MAX;
-             });
+      return list.is_array() &&
+             std::ranges::all_of(list, [](const Json& i) { return i.is_number_unsigned() && i <= INT64_MAX; });
     };
     if (!entry.is_object() || entry.size() != 3 || !entry.contains("dtype") || !entry["dtype"].is_string() ||
         !entry.contains("shape") || !naturals(entry["shape"]) || !entry.contains("data_offsets") ||
@@ -260,11 +255,10 @@ TensorFile::TensorFile(const std::filesystem::path& path, Checksums checksums)
     const std::optional<std::size_t> count = count_values(shape, *dtype);
     const std::size_t begin = entry["data_offsets"][0], end = entry["data_offsets"][1];
     if (begin > end || end > data.size())
-      refuse_entry("truncated: expected bytes " + std::to_string(begin) + " to " + std::to_string(end) +
-                   " of " + std::to_string(data.size()));
+      refuse_entry("truncated: expected bytes " + std::to_string(begin) + " to " + std::to_string(end) + " of " +
+                   std::to_string(data.size()));
     if (!count || *count * size_of(*dtype) != end - begin)
-      refuse_entry("shape " + to_string(shape) + " does not fit its " + std::to_string(end - begin) +
-                   " bytes");
+      refuse_entry("shape " + to_string(shape) + " does not fit its " + std::to_string(end - begin) + " bytes");
     ranges.push_back({begin, end, name});
     if (name.starts_with(pad_prefix)) {
       if (std::ranges::any_of(data.subspan(begin, end - begin), [](std::byte b) { return b != std::byte{}; }))
@@ -275,9 +269,8 @@ TensorFile::TensorFile(const std::filesystem::path& path, Checksums checksums)
     if (!text->contains(array_key(name))) refuse_entry("has no checksum");
     tensors_[name] = {*dtype, shape, data.subspan(begin, end - begin)};
   }
-  std::ranges::sort(ranges, [](const Range& a, const Range& b) {
-    return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);
-  });
+  std::ranges::sort(
+      ranges, [](const Range& a, const Range& b) { return std::pair(a.begin, a.end) < std::pair(b.begin, b.end); });
   std::size_t expected = 0;
   for (const Range& range : ranges) {
     if (range.begin != expected)
@@ -311,16 +304,16 @@ const TensorFile::Tensor& TensorFile::tensor(std::string_view name) const {
 const TensorFile::Tensor& TensorFile::typed(std::string_view name, DType dtype) const {
   const Tensor& found = tensor(name);
   if (found.dtype != dtype)
-    throw InputError(path_.string() + ": array " + shown(name) + " has type " +
-                     std::string(to_string(found.dtype)) + ", expected " + std::string(to_string(dtype)));
+    throw InputError(path_.string() + ": array " + shown(name) + " has type " + std::string(to_string(found.dtype)) +
+                     ", expected " + std::string(to_string(dtype)));
   return found;
 }
 
 void TensorFile::require_shape(std::string_view name, std::initializer_list<Index> shape) const {
   const std::vector<Index>& found = tensor(name).shape;
   if (!std::ranges::equal(found, shape, [](Index a, Index b) { return a == b || b == any; }))
-    throw InputError(path_.string() + ": array " + shown(name) + " has shape " + to_string(found) +
-                     ", expected " + to_string(std::span(shape)));
+    throw InputError(path_.string() + ": array " + shown(name) + " has shape " + to_string(found) + ", expected " +
+                     to_string(std::span(shape)));
 }
 
 Eigen::Map<const RowMatrix> TensorFile::matrix(std::string_view name, Index rows, Index cols) const {

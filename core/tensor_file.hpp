@@ -69,8 +69,7 @@ class TensorFileWriter {
     const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = matrix;
     std::vector<Index> shape{rows.rows()};
     if (Derived::ColsAtCompileTime != 1) shape.push_back(rows.cols());
-    add(std::move(name), std::span<const Scalar>(rows.data(), static_cast<std::size_t>(rows.size())),
-        std::move(shape));
+    add(std::move(name), std::span<const Scalar>(rows.data(), static_cast<std::size_t>(rows.size())), std::move(shape));
   }
 
   /// Writes all arrays. The new file takes the old one's name only when it is safely on the disk; after a

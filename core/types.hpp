@@ -11,8 +11,7 @@ using Index = Eigen::Index;
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;  ///< dense, column-major
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using SparseMatrix =
-    Eigen::SparseMatrix<double, Eigen::ColMajor, int>;  ///< both triangles stored, also if symmetric
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;  ///< both triangles stored, also if symmetric
 
 using VectorIn = const Eigen::Ref<const Vector>&;
 using VectorOut = Eigen::Ref<Vector>;

@@ -39,8 +39,7 @@ class SpringChain {
   LocalMatrix<6> stiffness(Index, const Local<6>& u) const {
     const Point d = current(u), t = d.normalized();
     const Matrix3<double> k =
-        stiffness_ *
-        ((1 - length_ / d.norm()) * (Matrix3<double>::Identity() - t * t.transpose()) + t * t.transpose());
+        stiffness_ * ((1 - length_ / d.norm()) * (Matrix3<double>::Identity() - t * t.transpose()) + t * t.transpose());
     LocalMatrix<6> K;
     K << k, -k, -k, k;
     return K;
@@ -70,7 +69,7 @@ int main() {
     largest_drift = std::max(largest_drift, std::abs(newmark.energy(state) - work));
     exchanged = std::max(exchanged, std::abs(work));
   }
-  std::printf("a chain of %td springs swings for %.0f s; energy drifts by %.1f %% of what was exchanged\n",
-              springs, state.time, 100 * largest_drift / exchanged);
+  std::printf("a chain of %td springs swings for %.0f s; energy drifts by %.1f %% of what was exchanged\n", springs,
+              state.time, 100 * largest_drift / exchanged);
   return largest_drift < 0.05 * exchanged ? 0 : 1;
 }

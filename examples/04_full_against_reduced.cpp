@@ -52,22 +52,19 @@ int main() {
 
   const ReducedModel model = reduce(solid, {.modes = 8, .points = 80});
   const Motion motion = with_reduced_system(model, [&](const auto& system) {
-    return simulate(system, NonlinearSolver::Bfgs,
-                    [&](const Vector& q) { return system.subspace().at(watched, q); });
+    return simulate(system, NonlinearSolver::Bfgs, [&](const Vector& q) { return system.subspace().at(watched, q); });
   });
 
-  std::printf("%td unknowns in full, %td reduced; %td tets, %zu evaluated\n", full.dim(), model.dim(),
-              mesh.num_tets(), model.indices.size());
-  const double deviation =
-      (motion.tip - reference.tip).cwiseAbs().maxCoeff() / reference.tip.cwiseAbs().maxCoeff();
+  std::printf("%td unknowns in full, %td reduced; %td tets, %zu evaluated\n", full.dim(), model.dim(), mesh.num_tets(),
+              model.indices.size());
+  const double deviation = (motion.tip - reference.tip).cwiseAbs().maxCoeff() / reference.tip.cwiseAbs().maxCoeff();
   std::printf(
       "tip of the bar: largest deviation %.1f %% of its amplitude; a step takes %.1f ms in full, %.2f ms "
       "reduced\n",
       100 * deviation, 1e3 * reference.seconds_per_step, 1e3 * motion.seconds_per_step);
 
   CsvTable table{{"time", "s"}, {"full", "m"}, {"reduced", "m"}};
-  for (Index k = 0; k < motion.time.size(); ++k)
-    table.add_row(motion.time[k], reference.tip[k], motion.tip[k]);
+  for (Index k = 0; k < motion.time.size(); ++k) table.add_row(motion.time[k], reference.tip[k], motion.tip[k]);
   write_csv("trajectory.csv", table);
   if (can_plot())
     draw_plot("trajectory.png", {.title = "Tip of a bar that is pulled aside and let go",

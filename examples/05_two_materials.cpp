@@ -21,8 +21,7 @@ Vector sag(const System& system) {
   const auto gravity = system.project({.gravity = {0, -9.81, 0}});
   newmark.balance(gravity, state);
   for (int step = 0; step < 30; ++step)
-    if (newmark.step(gravity, state).status != Status::Converged)
-      throw SolverError("a step did not converge");
+    if (newmark.step(gravity, state).status != Status::Converged) throw SolverError("a step did not converge");
   return state.u;
 }
 
@@ -31,8 +30,7 @@ int main() {
   Solid solid = isotropic_solid(mesh, {.young = 8e4, .poisson = 0.4}, select_nodes(mesh.nodes, "x<1%"));
   const std::vector<double> soft = material_law("stvk").values({.young = 1e4, .poisson = 0.4});
   solid.parameters.conservativeResize(2, Eigen::NoChange);
-  solid.parameters.row(1) =
-      Eigen::Map<const Eigen::RowVectorXd>(soft.data(), static_cast<Index>(soft.size()));
+  solid.parameters.row(1) = Eigen::Map<const Eigen::RowVectorXd>(soft.data(), static_cast<Index>(soft.size()));
   for (const Tet& tet : mesh.tets) {  // stiff below, soft above
     double y = 0;
     for (const Index v : tet) y += mesh.nodes(v, 1) / 4;
@@ -42,22 +40,20 @@ int main() {
   const FullSystem full(make_model<StVenantKirchhoff>(solid), solid.nodal_mass(), solid.fixed_nodes);
   const Vector u_full = full.expand(sag(full));
   const ReducedModel model = reduce(solid, {.modes = 15, .points = 150});
-  const Vector u = with_reduced_system(
-      model, [](const auto& system) { return system.subspace().reconstruct(sag(system)); });
+  const Vector u =
+      with_reduced_system(model, [](const auto& system) { return system.subspace().reconstruct(sag(system)); });
   const double deviation = (u - u_full).norm() / u_full.norm();
   std::printf("reduced against full: %.1f %% of the displacement\n", 100 * deviation);
 
   Vector young = Vector::Zero(mesh.num_nodes());
   for (Index e = 0; e < mesh.num_tets(); ++e)
-    for (const Index v : mesh.tets[e])
-      young[v] = std::max(young[v], solid.material_of_cell[e] == 0 ? 8e4 : 1e4);
+    for (const Index v : mesh.tets[e]) young[v] = std::max(young[v], solid.material_of_cell[e] == 0 ? 8e4 : 1e4);
   const std::vector<Triangle> surface = boundary_faces(mesh);
   std::vector<PictureObject> objects;
   for (const auto& [caption, displacement] :
        {std::pair{"at rest", Vector(Vector::Zero(u.size()))}, {"full", u_full}, {"reduced", u}}) {
-    PictureObject object{
-        .positions = mesh.nodes + Eigen::Map<const Points>(displacement.data(), mesh.num_nodes(), 3),
-        .triangles = surface};
+    PictureObject object{.positions = mesh.nodes + Eigen::Map<const Points>(displacement.data(), mesh.num_nodes(), 3),
+                         .triangles = surface};
     object.scalar = young;
     object.caption = caption;
     objects.push_back(object);

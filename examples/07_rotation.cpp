@@ -16,8 +16,9 @@ using namespace supple;
 
 int main() {
   const TetMesh mesh = builtin_mesh("cube:5");
-  const FullSystem system(TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.4})),
-                          lumped_mass(mesh, 1000.0));
+  const FullSystem system(
+      TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.4})),
+      lumped_mass(mesh, 1000.0));
   const DenseBasis linear = ModalBasis{.num_modes = 7}(system);  // six rigid ones, linearised, and one more
   const NodalBasis extended = ExtendedModalBasis{.num_modes = 7}(system);
 

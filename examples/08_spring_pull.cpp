@@ -50,7 +50,8 @@ int main() {
   });
   const auto modes = std::make_shared<const DenseBasis>(ModalBasis{.num_modes = model.dim()}(*full));
   const GalerkinSystem<Model, DenseBasis> linear(full, modes);
-  const double off = solve("linear modes, all tets", linear, [&](VectorIn q) -> Vector { return modes->reconstruct(q); });
+  const double off =
+      solve("linear modes, all tets", linear, [&](VectorIn q) -> Vector { return modes->reconstruct(q); });
   write_png("spring_pull.png", draw_picture(objects));
   return extended < off ? 0 : 1;
 }

@@ -90,8 +90,7 @@ int main() {
 
   bool good = true;
   const auto report = [&](const char* name, const Selection& selected) {
-    const ReducedSystem reduced(full.shared_model(), U, selected.indices, selected.weights, K_rest,
-                                full.nodal_mass());
+    const ReducedSystem reduced(full.shared_model(), U, selected.indices, selected.weights, K_rest, full.nodal_mass());
     const Heating heating = heat_up(reduced, burners, 1, [&](VectorIn q) { return U->reconstruct(q); });
     const double error = off(heating.temperatures);
     std::printf(

@@ -3,8 +3,6 @@
 //   $ example_10_own_material
 //   Gent's rubber: 60 of 1536 tets, error 0.031 in training, 0.022 held out; the tip sags by 0.060 m
 //   neo-Hookean:   60 of 1536 tets, error 0.031 in training, 0.022 held out; the tip sags by 0.060 m
-#include "gent.hpp"
-
 #include <io/builtin_meshes.hpp>
 #include <io/node_sets.hpp>
 #include <physics/static_solver.hpp>
@@ -12,6 +10,8 @@
 
 #include <cmath>
 #include <cstdio>
+
+#include "gent.hpp"
 
 using namespace supple;
 

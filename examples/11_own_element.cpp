@@ -3,9 +3,6 @@
 //   $ example_11_own_element
 //   2048 wedges: 80 of them stand for all, error 0.02 in training, 0.01 held out
 //   sag of the corner: full 0.052 m, reduced 0.051 m
-#include "batched_omp.hpp"
-#include "wedge.hpp"
-
 #include <io/builtin_surfaces.hpp>
 #include <io/node_sets.hpp>
 #include <physics/mass.hpp>
@@ -18,6 +15,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "batched_omp.hpp"
+#include "wedge.hpp"
+
 using namespace supple;
 
 /// A surface in the plane y = 0, drawn out along y in layers.
@@ -27,7 +27,8 @@ CellMesh<6> thick_sheet(const TriangleMesh& sheet, double thickness, Index layer
   mesh.nodes.resize(n * (layers + 1), 3);
   for (Index k = 0; k <= layers; ++k) {
     mesh.nodes.middleRows(k * n, n) = sheet.nodes;
-    mesh.nodes.middleRows(k * n, n).col(1).setConstant(thickness * static_cast<double>(k) / static_cast<double>(layers));
+    mesh.nodes.middleRows(k * n, n).col(1).setConstant(thickness * static_cast<double>(k) /
+                                                       static_cast<double>(layers));
   }
   for (Index k = 0; k < layers; ++k)
     for (const auto& [a, b, c] : sheet.triangles) {

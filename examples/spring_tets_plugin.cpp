@@ -81,7 +81,8 @@ SUPPLE_PLUGIN(registry) {
       .name = "spring-tets",
       .parameters = {"modulus"},
       .from = [](const IsotropicModuli& moduli) { return std::vector<double>{moduli.young}; },
-      .objection = [](const std::vector<double>& values) { return values.at(0) > 0 ? "" : "the modulus is not positive"; },
+      .objection =
+          [](const std::vector<double>& values) { return values.at(0) > 0 ? "" : "the modulus is not positive"; },
       .tets =
           [](const TetMesh& mesh, const RowMatrix& rows, const std::vector<std::int32_t>& of_tet) {
             std::vector<double> moduli(rows.data(), rows.data() + rows.rows());

@@ -53,8 +53,7 @@ TetMesh kuhn_mesh(const std::array<Index, 3>& cells, Index divisor, const Keep& 
 }
 
 TetMesh bar(const BuiltinSpec& spec) {
-  const std::vector<Index> cells =
-      spec.numbers(3, 'x', "bar:NXxNYxNZ with numbers of cells ≥ 1, such as bar:80x20x10");
+  const std::vector<Index> cells = spec.numbers(3, 'x', "bar:NXxNYxNZ with numbers of cells ≥ 1, such as bar:80x20x10");
   spec.expect_size(6 * product(cells));
   return kuhn_mesh({cells[0], cells[1], cells[2]}, *std::max_element(cells.begin(), cells.end()),
                    [](Index, Index, Index) { return true; });
@@ -67,8 +66,7 @@ TetMesh cube(const BuiltinSpec& spec) {
 }
 
 TetMesh menger(const BuiltinSpec& spec) {
-  const std::string expectation =
-      "menger:BASE,LEVEL,SUB with BASE ≥ 3, LEVEL ≥ 1, SUB ≥ 1, such as menger:3,3,1";
+  const std::string expectation = "menger:BASE,LEVEL,SUB with BASE ≥ 3, LEVEL ≥ 1, SUB ≥ 1, such as menger:3,3,1";
   const std::vector<Index> numbers = spec.numbers(3, ',', expectation);
   const Index base = numbers[0], level = numbers[1], sub = numbers[2];
   if (base < 3) spec.fail("expected " + expectation);
@@ -115,8 +113,7 @@ struct Builtin {
   std::string_view name;
   TetMesh (*make)(const BuiltinSpec&);
 };
-constexpr Builtin builtins[] = {
-    {"bar", bar}, {"cube", cube}, {"menger", menger}, {"ball", ball}, {"octopus", octopus}};
+constexpr Builtin builtins[] = {{"bar", bar}, {"cube", cube}, {"menger", menger}, {"ball", ball}, {"octopus", octopus}};
 
 const Builtin* find_builtin(std::string_view name) {
   for (const Builtin& builtin : builtins)

@@ -26,8 +26,7 @@ BuiltinSpec::BuiltinSpec(std::string_view spec) : text(spec), name(spec.substr(0
   if (name.size() < spec.size()) parameters = spec.substr(name.size() + 1);
 }
 
-std::vector<Index> BuiltinSpec::numbers(std::size_t count, char separator,
-                                        const std::string& expectation) const {
+std::vector<Index> BuiltinSpec::numbers(std::size_t count, char separator, const std::string& expectation) const {
   std::vector<Index> values = positive_numbers(parameters, separator);
   if (values.size() != count) fail("expected " + expectation);
   return values;

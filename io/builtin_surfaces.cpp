@@ -19,8 +19,7 @@ void zip_rows(Index lower, Index num_lower, Index upper, Index num_upper, const 
   Index i = 0, j = 0;
   while (i + 1 < num_lower || j + 1 < num_upper) {
     const auto middle = [&](Index v) { return place(v) + place(v + 1); };
-    const bool from_lower =
-        j + 1 == num_upper || (i + 1 < num_lower && middle(lower + i) < middle(upper + j));
+    const bool from_lower = j + 1 == num_upper || (i + 1 < num_lower && middle(lower + i) < middle(upper + j));
     if (from_lower) {
       triangles.push_back({lower + i, upper + j, lower + i + 1});
       ++i;
@@ -52,14 +51,12 @@ TriangleMesh plate(const BuiltinSpec& spec) {
   }
   const auto place = [&](Index v) { return mesh.nodes(v, 0); };
   for (Index j = 0; j < ny; ++j)
-    zip_rows(first[j], first[j + 1] - first[j], first[j + 1], first[j + 2] - first[j + 1], place,
-             mesh.triangles);
+    zip_rows(first[j], first[j + 1] - first[j], first[j + 1], first[j + 2] - first[j + 1], place, mesh.triangles);
   return mesh;
 }
 
 TriangleMesh cylinder(const BuiltinSpec& spec) {
-  const std::string expectation =
-      "cylinder:NxM with N ≥ 3 edges around and M ≥ 1 rows, such as cylinder:48x60";
+  const std::string expectation = "cylinder:NxM with N ≥ 3 edges around and M ≥ 1 rows, such as cylinder:48x60";
   const std::vector<Index> numbers = spec.numbers(2, 'x', expectation);
   if (numbers[0] < 3) spec.fail("expected " + expectation);
   spec.expect_size(2 * product(numbers));
@@ -73,8 +70,7 @@ TriangleMesh cylinder(const BuiltinSpec& spec) {
   for (Index j = 0; j <= m; ++j)
     for (Index i = 0; i < n; ++i) {
       const double angle = half_angle * static_cast<double>(2 * i + j % 2);
-      mesh.nodes.row(n * j + i) << 0.5 * std::cos(angle), height * static_cast<double>(j),
-          -0.5 * std::sin(angle);
+      mesh.nodes.row(n * j + i) << 0.5 * std::cos(angle), height * static_cast<double>(j), -0.5 * std::sin(angle);
     }
   for (Index j = 0; j < m; ++j)
     for (Index i = 0; i < n; ++i) {
@@ -110,9 +106,8 @@ TriangleMesh sphere(const BuiltinSpec& spec) {
   const TriangleMesh coarse = icosahedron();
   TriangleMesh mesh;
   mesh.nodes.resize(10 * n * n + 2, 3);
-  using Weights =
-      std::vector<std::pair<Index, Index>>;  // (corner, weight > 0) by corner, weights add up to n
-  std::map<Weights, Index> on_edge;          // nodes that faces share
+  using Weights = std::vector<std::pair<Index, Index>>;  // (corner, weight > 0) by corner, weights add up to n
+  std::map<Weights, Index> on_edge;                      // nodes that faces share
   Index count = 0;
   for (const auto& [a, b, c] : coarse.triangles) {
     const auto node_at = [&, corners = std::array{a, b, c}](Index i, Index j) {

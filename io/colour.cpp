@@ -16,8 +16,7 @@ struct Lch {
 
 Eigen::Vector3d linear_rgb(const Lch& lch) {
   const double hue = lch.h * std::numbers::pi / 180, a = lch.C * std::cos(hue), b = lch.C * std::sin(hue);
-  const Eigen::Array3d lms{lch.L + 0.3963377774 * a + 0.2158037573 * b,
-                           lch.L - 0.1055613458 * a - 0.0638541728 * b,
+  const Eigen::Array3d lms{lch.L + 0.3963377774 * a + 0.2158037573 * b, lch.L - 0.1055613458 * a - 0.0638541728 * b,
                            lch.L - 0.0894841775 * a - 1.2914855480 * b};
   const Eigen::Vector3d cubes = lms.cube();
   Eigen::Matrix3d to_rgb;
@@ -35,8 +34,7 @@ Colour screen_colour(Lch lch) {
   };
   if (!fits(lch.C)) {
     double low = 0;
-    for (double high = lch.C; high - low > 1e-6;)
-      (fits(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+    for (double high = lch.C; high - low > 1e-6;) (fits(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
     lch.C = low;
   }
   return to_screen(linear_rgb(lch).cast<float>());

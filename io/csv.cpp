@@ -10,8 +10,8 @@ namespace supple {
 namespace {
 
 std::string csv_cell(const std::string& cell) {
-  const bool plain = cell.find_first_of(",\"\r\n") == cell.npos &&
-                     (cell.empty() || (cell.front() != ' ' && cell.back() != ' '));
+  const bool plain =
+      cell.find_first_of(",\"\r\n") == cell.npos && (cell.empty() || (cell.front() != ' ' && cell.back() != ' '));
   if (plain) return cell;
   std::string text = "\"";
   for (const char c : cell) text += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -40,8 +40,7 @@ class Records {
     do cells.push_back(next_cell());
     while (at_ < text_.size() && text_[at_] == ',' && ++at_);
     if (at_ < text_.size() && text_[at_] == '\r') ++at_;
-    if (at_ < text_.size() && text_[at_] != '\n')
-      fail("expected ',' or the end of the line after a quoted cell");
+    if (at_ < text_.size() && text_[at_] != '\n') fail("expected ',' or the end of the line after a quoted cell");
     ++at_, ++line_;
     return cells;
   }
@@ -80,8 +79,7 @@ class Records {
 CsvTable::CsvTable(std::vector<Column> columns) : columns_(std::move(columns)) {
   require(!columns_.empty(), "a table has no columns, expected at least one");
   for (auto column = columns_.begin(); column != columns_.end(); ++column)
-    require(std::none_of(columns_.begin(), column,
-                         [&](const Column& other) { return other.name == column->name; }),
+    require(std::none_of(columns_.begin(), column, [&](const Column& other) { return other.name == column->name; }),
             "two columns have the name '" + column->name + "'");
 }
 
@@ -114,10 +112,9 @@ Vector CsvTable::numbers(std::string_view name) const {
     const std::string& cell = rows_[row][column];
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), values[row]);
     if (error != std::errc{} || end != cell.data() + cell.size())
-      throw InputError(
-          source_ +
-          (lines_.empty() ? ", row " + std::to_string(row + 1) : ":" + std::to_string(lines_[row])) + ": '" +
-          columns_[column].name + "' is '" + cell + "', expected a number");
+      throw InputError(source_ +
+                       (lines_.empty() ? ", row " + std::to_string(row + 1) : ":" + std::to_string(lines_[row])) +
+                       ": '" + columns_[column].name + "' is '" + cell + "', expected a number");
   }
   return values;
 }
@@ -154,9 +151,8 @@ CsvTable read_csv(const std::filesystem::path& path) {
       const Index line = records.line();
       std::vector<std::string> cells = records.next();
       if (cells.size() != table.columns_.size())
-        throw InputError(path.string() + ":" + std::to_string(line) + ": has " +
-                         std::to_string(cells.size()) + " cells, expected " +
-                         std::to_string(table.columns_.size()));
+        throw InputError(path.string() + ":" + std::to_string(line) + ": has " + std::to_string(cells.size()) +
+                         " cells, expected " + std::to_string(table.columns_.size()));
       table.add_cells(std::move(cells));
       table.lines_.push_back(line);
     }

@@ -27,16 +27,14 @@ const char* without_plus(std::string_view word) {
 std::string read_bytes(const std::filesystem::path& path) {
   const auto fail = [&] { throw InputError(path.string() + ": cannot be read: " + std::strerror(errno)); };
   std::error_code unknown;
-  if (std::filesystem::is_directory(path, unknown))
-    throw InputError(path.string() + ": is a folder, expected a file");
+  if (std::filesystem::is_directory(path, unknown)) throw InputError(path.string() + ": is a folder, expected a file");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file) fail();
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
   std::string bytes(unknown ? 0 : size, '\0');
   bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
   std::array<char, 1 << 14> more;  // pipes have no size
-  while (const std::size_t n = std::fread(more.data(), 1, more.size(), file.get()))
-    bytes.append(more.data(), n);
+  while (const std::size_t n = std::fread(more.data(), 1, more.size(), file.get())) bytes.append(more.data(), n);
   if (std::ferror(file.get())) fail();
   return bytes;
 }
@@ -133,8 +131,7 @@ Index Cursor::count(std::string_view what, std::size_t size) {
 }
 
 bool Cursor::skip_behind(std::string_view word, Where where) {
-  for (std::size_t at = bytes_.find(word, position_); at != std::string_view::npos;
-       at = bytes_.find(word, at + 1)) {
+  for (std::size_t at = bytes_.find(word, position_); at != std::string_view::npos; at = bytes_.find(word, at + 1)) {
     const std::size_t end = at + word.size();
     if ((where == Where::Anywhere || at == 0 || bytes_[at - 1] == '\n') &&
         (end == bytes_.size() || is_blank(bytes_[end]))) {
@@ -147,8 +144,8 @@ bool Cursor::skip_behind(std::string_view word, Where where) {
 
 void Cursor::expect_room(std::uint64_t count, std::size_t size, std::string_view what) const {
   if (size == 0 || count <= num_left() / size) return;
-  fail("announces " + std::to_string(count) + " " + std::string(what) + ", but the " +
-       std::to_string(num_left()) + " bytes that follow cannot hold them");
+  fail("announces " + std::to_string(count) + " " + std::string(what) + ", but the " + std::to_string(num_left()) +
+       " bytes that follow cannot hold them");
 }
 
 void Cursor::fail(const std::string& message) const {

@@ -82,9 +82,7 @@ class Cursor {
 
  private:
   void skip_blanks(bool over_lines);
-  bool is_blank(char c) const {
-    return static_cast<unsigned char>(c) <= ' ' || (c == syntax_.separator && c != '\0');
-  }
+  bool is_blank(char c) const { return static_cast<unsigned char>(c) <= ' ' || (c == syntax_.separator && c != '\0'); }
   std::int64_t to_integer(std::string_view word, std::string_view what) const;
   double to_real(std::string_view word, std::string_view what) const;
   [[noreturn]] void fail_expecting(std::string_view what, std::string_view found) const;

@@ -25,9 +25,7 @@ float distance(const Eigen::Vector2f& p, const TextStrokes::Segment& s) {
 }  // namespace
 
 Image::Image(int image_width, int image_height, const Colour& fill)
-    : width(image_width),
-      height(image_height),
-      pixels(3 * static_cast<std::size_t>(image_width) * image_height) {
+    : width(image_width), height(image_height), pixels(3 * static_cast<std::size_t>(image_width) * image_height) {
   for (std::size_t k = 0; k < pixels.size(); k += 3) {
     pixels[k] = to_byte(fill.r);
     pixels[k + 1] = to_byte(fill.g);
@@ -65,16 +63,13 @@ void draw_text(Image& image, double x, double y, std::string_view text, double s
   std::vector<float> coverage(static_cast<std::size_t>(columns) * rows, 0.f);
   for (const TextStrokes::Segment& stroke : line.segments) {
     const auto to_pixels = [&](const Eigen::Vector2f& p) {
-      return Eigen::Vector2f(static_cast<float>(x - left + size * p.x()),
-                             static_cast<float>(y - top - size * p.y()));
+      return Eigen::Vector2f(static_cast<float>(x - left + size * p.x()), static_cast<float>(y - top - size * p.y()));
     };
     const TextStrokes::Segment s{to_pixels(stroke.a), to_pixels(stroke.b)};
     const float reach = static_cast<float>(half) + 1;
     const Eigen::Vector2f low = s.a.cwiseMin(s.b).array() - reach, high = s.a.cwiseMax(s.b).array() + reach;
-    for (int j = std::max(0, static_cast<int>(low.y())); j < std::min(rows, static_cast<int>(high.y()) + 1);
-         ++j)
-      for (int i = std::max(0, static_cast<int>(low.x()));
-           i < std::min(columns, static_cast<int>(high.x()) + 1); ++i) {
+    for (int j = std::max(0, static_cast<int>(low.y())); j < std::min(rows, static_cast<int>(high.y()) + 1); ++j)
+      for (int i = std::max(0, static_cast<int>(low.x())); i < std::min(columns, static_cast<int>(high.x()) + 1); ++i) {
         const float inside = static_cast<float>(half) + 0.5f - distance({i + 0.5f, j + 0.5f}, s);
         float& covered = coverage[static_cast<std::size_t>(j) * columns + i];
         covered = std::max(covered, std::clamp(inside, 0.f, 1.f));
@@ -86,9 +81,9 @@ void draw_text(Image& image, double x, double y, std::string_view text, double s
       const int px = left + i, py = top + j;
       if (a == 0 || px < 0 || py < 0 || px >= image.width || py >= image.height) continue;
       const Colour below = image.at(px, py);
-      image.set(px, py,
-                {below.r + a * (colour.r - below.r), below.g + a * (colour.g - below.g),
-                 below.b + a * (colour.b - below.b)});
+      image.set(
+          px, py,
+          {below.r + a * (colour.r - below.r), below.g + a * (colour.g - below.g), below.b + a * (colour.b - below.b)});
     }
 }
 

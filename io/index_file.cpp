@@ -13,8 +13,7 @@ std::vector<Index> read_indices(const std::filesystem::path& path, std::string_v
   while (!in.peek().empty()) {
     const std::int64_t index = in.integer("a " + name + " index");
     if (index < 0 || index >= count)
-      in.fail(name + " " + std::to_string(index) + " does not exist: indices are 0 … " +
-              std::to_string(count - 1));
+      in.fail(name + " " + std::to_string(index) + " does not exist: indices are 0 … " + std::to_string(count - 1));
     indices.push_back(index);
   }
   if (indices.empty()) throw InputError(path.string() + ": names no " + name + ", expected one index a line");

@@ -136,9 +136,7 @@ class Stuffing {
     });
   }
 
-  bool is_cut(Index v, Index w) const {
-    return (depth_[v] > 0 && depth_[w] < 0) || (depth_[v] < 0 && depth_[w] > 0);
-  }
+  bool is_cut(Index v, Index w) const { return (depth_[v] > 0 && depth_[w] < 0) || (depth_[v] < 0 && depth_[w] > 0); }
   static std::array<Index, 2> edge(Index v, Index w) { return {std::min(v, w), std::max(v, w)}; }
 
   void find_cuts() {
@@ -156,8 +154,7 @@ class Stuffing {
       }
     });
     cut_.reserve(edges.size());
-    for (std::size_t k = 0; k < edges.size(); ++k)
-      cut_.emplace(edge(edges[k][0], edges[k][1]), Cut{cuts[k], -1});
+    for (std::size_t k = 0; k < edges.size(); ++k) cut_.emplace(edge(edges[k][0], edges[k][1]), Cut{cuts[k], -1});
   }
 
   /// Moves nodes onto the surface that would leave edges shorter than a safe share: Table 1 of the paper.
@@ -218,17 +215,14 @@ class Stuffing {
 
   // A quadrilateral between two tets is split at its node of highest rank, so both split it alike.
   void add_pyramid(Index apex, const std::array<Index, 4>& quad) {
-    const auto top =
-        std::max_element(quad.begin(), quad.end(), [&](Index a, Index b) { return ranks_before(a, b); });
+    const auto top = std::max_element(quad.begin(), quad.end(), [&](Index a, Index b) { return ranks_before(a, b); });
     const Index k = top - quad.begin();
-    for (const Index side : {1, 2})
-      tets_.push_back({apex, quad[k], quad[(k + side) % 4], quad[(k + side + 1) % 4]});
+    for (const Index side : {1, 2}) tets_.push_back({apex, quad[k], quad[(k + side) % 4], quad[(k + side + 1) % 4]});
   }
 
   void add_prism(std::array<Index, 3> bottom, std::array<Index, 3> top) {
     const auto highest = [&](const std::array<Index, 3>& side) {
-      return std::max_element(side.begin(), side.end(),
-                              [&](Index a, Index b) { return ranks_before(a, b); }) -
+      return std::max_element(side.begin(), side.end(), [&](Index a, Index b) { return ranks_before(a, b); }) -
              side.begin();
     };
     if (ranks_before(bottom[highest(bottom)], top[highest(top)])) std::swap(bottom, top);

@@ -18,7 +18,6 @@ namespace supple {
 /// \throws std::invalid_argument if the spacing is not positive, the box holds more than 2³⁰ cells, or no
 ///   lattice node is inside.
 /// \see Labelle and Shewchuk 2007, "Isosurface Stuffing: Fast Tetrahedral Meshes with Good Dihedral Angles".
-TetMesh stuff_isosurface(const std::function<double(const Point&)>& depth, const BoundingBox& box,
-                         double spacing);
+TetMesh stuff_isosurface(const std::function<double(const Point&)>& depth, const BoundingBox& box, double spacing);
 
 }  // namespace supple

@@ -41,8 +41,7 @@ std::string shown(const Json& value) {
 /// A step of a JSON pointer (RFC 6901).
 std::string step(std::string_view key) {
   std::string text = "/";
-  for (const char c : key)
-    text += c == '~' ? std::string("~0") : c == '/' ? std::string("~1") : std::string(1, c);
+  for (const char c : key) text += c == '~' ? std::string("~0") : c == '/' ? std::string("~1") : std::string(1, c);
   return text;
 }
 
@@ -57,8 +56,7 @@ std::string position(std::string_view text, std::size_t byte) {
 }  // namespace
 
 std::string Interval::to_string() const {
-  const std::string from = (low_open ? "> " : ">= ") + to_text(low),
-                    to = (high_open ? "< " : "<= ") + to_text(high);
+  const std::string from = (low_open ? "> " : ">= ") + to_text(low), to = (high_open ? "< " : "<= ") + to_text(high);
   if (low == -infinity) return high == infinity ? "any number" : to;
   if (high == infinity) return from;
   return low_open || high_open ? from + " and " + to : "between " + to_text(low) + " and " + to_text(high);
@@ -113,14 +111,12 @@ JsonFields JsonFields::parse(std::string_view text, std::string source) {
     // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while …"
     const std::string_view what = error.what();
     const std::size_t reason = what.find(": ");
-    refuse(error.byte > 0 ? error.byte - 1 : 0,
-           std::string(reason == what.npos ? what : what.substr(reason + 2)));
+    refuse(error.byte > 0 ? error.byte - 1 : 0, std::string(reason == what.npos ? what : what.substr(reason + 2)));
   } catch (const Json::out_of_range& error) {
     // "[json.exception.out_of_range.406] number overflow parsing '1e999'"
     const std::string_view what = error.what();
     const std::size_t begin = what.find('\''), end = what.rfind('\'');
-    const std::string_view number =
-        begin < end ? what.substr(begin + 1, end - begin - 1) : std::string_view();
+    const std::string_view number = begin < end ? what.substr(begin + 1, end - begin - 1) : std::string_view();
     refuse(text.find(number), "the number " + std::string(number) + " is too large");
   }
   if (!document->root.is_object())
@@ -213,16 +209,13 @@ std::string JsonFields::text(std::string_view key) const {
 
 std::string JsonFields::choice(std::string_view key, std::initializer_list<std::string_view> options) const {
   const Field choice = field(key);
-  if (choice.value.is_string() && std::ranges::find(options, choice.text()) != options.end())
-    return choice.text();
+  if (choice.value.is_string() && std::ranges::find(options, choice.text()) != options.end()) return choice.text();
   std::string list;
-  for (const std::string_view option : options)
-    list += (list.empty() ? "\"" : ", \"") + std::string(option) + '"';
+  for (const std::string_view option : options) list += (list.empty() ? "\"" : ", \"") + std::string(option) + '"';
   choice.expect("one of " + list);
 }
 
-Vector JsonFields::numbers(std::string_view key, Index size, const Interval& range,
-                           std::string_view unit) const {
+Vector JsonFields::numbers(std::string_view key, Index size, const Interval& range, std::string_view unit) const {
   const Field list = field(key);
   const std::vector<Field> elements = list.elements("numbers");
   Vector values(static_cast<Index>(elements.size()));

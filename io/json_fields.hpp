@@ -64,9 +64,7 @@ class JsonFields {
   /// A list of numbers, of stated length unless `any_size`.
   Vector numbers(std::string_view key, Index size, const Interval& range = any_number,
                  std::string_view unit = "") const;
-  Point point(std::string_view key, std::string_view unit = "m") const {
-    return numbers(key, 3, any_number, unit);
-  }
+  Point point(std::string_view key, std::string_view unit = "m") const { return numbers(key, 3, any_number, unit); }
   std::vector<Index> integers(std::string_view key, const Interval& range = any_number) const;
   std::vector<std::string> texts(std::string_view key) const;
   JsonFields object(std::string_view key) const;

@@ -91,8 +91,7 @@ class NpyHeaderText {
     while (!accept('}')) {
       const std::string_view key = quoted("'descr', 'fortran_order' or 'shape'");
       bool& is_known = key == "descr" ? has_type : key == "fortran_order" ? has_order : has_shape;
-      if (&is_known == &has_shape && key != "shape")
-        fail_at_item("expected 'descr', 'fortran_order' or 'shape'");
+      if (&is_known == &has_shape && key != "shape") fail_at_item("expected 'descr', 'fortran_order' or 'shape'");
       if (is_known) fail_at_item("'" + std::string(key) + "' appears twice in the header");
       is_known = true;
       expect(':');
@@ -166,8 +165,7 @@ class NpyHeaderText {
                is_whole = (type[1] == 'i' || type[1] == 'u') &&
                           (type[2] == '1' || type[2] == '2' || type[2] == '4' || type[2] == '8'),
                is_truth = type[1] == 'b' && type[2] == '1';
-    if ((!is_real && !is_whole && !is_truth) ||
-        std::string_view("<>=|").find(order) == std::string_view::npos ||
+    if ((!is_real && !is_whole && !is_truth) || std::string_view("<>=|").find(order) == std::string_view::npos ||
         (order == '|' && header.item_size > 1))
       fail_at_item(expectation);
     header.swapped = order == (std::endian::native == std::endian::little ? '>' : '<');
@@ -215,8 +213,8 @@ NpyHeader read_npy_header(ByteStream& file) {
   if (file.num_left() < version.size()) refuse(file.position(), "the file ends in its header");
   file.read(version.data(), version.size());
   if (version[0] < 1 || version[0] > 3 || version[1] != 0)
-    refuse(npy_magic.size(), "is of format version " + std::to_string(version[0]) + "." +
-                                 std::to_string(version[1]) + ", expected 1.0, 2.0 or 3.0");
+    refuse(npy_magic.size(), "is of format version " + std::to_string(version[0]) + "." + std::to_string(version[1]) +
+                                 ", expected 1.0, 2.0 or 3.0");
   std::array<unsigned char, 4> digits{};
   const std::size_t length_size = version[0] == 1 ? 2 : 4;
   if (file.num_left() < length_size) refuse(file.position(), "the file ends in its header");
@@ -298,25 +296,22 @@ Array read_npy(ByteStream& file) {
   Array array;
   array.rank = static_cast<int>(header.shape.size());
   const Index rows = header.shape[0], cols = array.rank == 2 ? header.shape[1] : 1;
-  const std::string numbers = (array.rank == 2 ? shown_size(rows, cols) : std::to_string(rows)) +
-                              " numbers of " + std::to_string(header.item_size) + " bytes";
+  const std::string numbers = (array.rank == 2 ? shown_size(rows, cols) : std::to_string(rows)) + " numbers of " +
+                              std::to_string(header.item_size) + " bytes";
   if (rows == 0 || cols == 0) refuse("the header announces " + numbers + ", expected at least one");
   const Index available = static_cast<Index>(file.num_left() / header.item_size);
   if (cols > available || rows > available / cols)
-    refuse("the file ends before its " + numbers + ": " + std::to_string(file.num_left()) +
-           " bytes are left");
+    refuse("the file ends before its " + numbers + ": " + std::to_string(file.num_left()) + " bytes are left");
   const std::size_t surplus = file.num_left() - static_cast<std::size_t>(rows * cols) * header.item_size;
   if (surplus > 0) refuse(std::to_string(surplus) + " bytes follow its " + numbers + ", expected none");
 
   Matrix& A = array.values;
   A.resize(rows, cols);
   const auto read_whole = [&]<typename Signed, typename Unsigned>(Signed, Unsigned) {
-    header.kind == 'i' ? read_npy_numbers<Signed>(file, header, A)
-                       : read_npy_numbers<Unsigned>(file, header, A);
+    header.kind == 'i' ? read_npy_numbers<Signed>(file, header, A) : read_npy_numbers<Unsigned>(file, header, A);
   };
   if (header.kind == 'f')
-    header.item_size == 8 ? read_npy_numbers<double>(file, header, A)
-                          : read_npy_numbers<float>(file, header, A);
+    header.item_size == 8 ? read_npy_numbers<double>(file, header, A) : read_npy_numbers<float>(file, header, A);
   else if (header.item_size == 8)
     read_whole(std::int64_t{}, std::uint64_t{});
   else if (header.item_size == 4)
@@ -356,8 +351,8 @@ MtxHeader read_mtx_header(Cursor& in) {
       expected += (expected.empty() ? "" : " or ") + std::string(word);
     }
     in.fail("word " + std::to_string(k + 1) + " of the first line is " +
-            (k < words.size() ? "\"" + words[k].substr(0, 40) + "\"" : std::string("missing")) +
-            ", expected " + expected);
+            (k < words.size() ? "\"" + words[k].substr(0, 40) + "\"" : std::string("missing")) + ", expected " +
+            expected);
   };
   check(0, {"%%matrixmarket"});
   check(1, {"matrix"});
@@ -412,8 +407,8 @@ Array read_mtx(std::string name, std::string_view bytes) {
     end_line("the size");
     // each number takes two bytes, a separator and a digit
     in.expect_room(static_cast<std::uint64_t>(cols), 2, "columns");
-    in.expect_room(static_cast<std::uint64_t>(rows),
-                   static_cast<std::size_t>(is_general ? 2 * cols : cols - 1), "rows");
+    in.expect_room(static_cast<std::uint64_t>(rows), static_cast<std::size_t>(is_general ? 2 * cols : cols - 1),
+                   "rows");
     A.setZero(rows, cols);
     for (Index j = 0; j < cols; ++j)
       for (Index i = is_general ? 0 : header.symmetry == Symmetry::Symmetric ? j : j + 1; i < rows; ++i) {
@@ -473,9 +468,8 @@ Array read_array(const std::filesystem::path& path) {
     if (A.col(j).allFinite()) continue;
     Index i = 0;
     while (std::isfinite(A(i, j))) ++i;
-    throw InputError(file.name() + ": the entry in row " + std::to_string(i) + ", column " +
-                     std::to_string(j) + " (from 0) is " + std::to_string(A(i, j)) +
-                     ", expected a finite number");
+    throw InputError(file.name() + ": the entry in row " + std::to_string(i) + ", column " + std::to_string(j) +
+                     " (from 0) is " + std::to_string(A(i, j)) + ", expected a finite number");
   }
   return array;
 }

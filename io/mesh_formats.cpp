@@ -25,8 +25,7 @@ VtkType vtk_type(std::int64_t type, const Cursor& in) {
   if (is({13, 26, 31, 32, 65, 73, 80})) return {VtkType::Other, "prisms"};
   if (is({14, 27, 37, 66, 74, 81})) return {VtkType::Other, "pyramids"};
   if (is({15, 16, 41, 42})) return {VtkType::Other, "polyhedra"};
-  if ((type >= 0 && type <= 9) ||
-      is({21, 22, 23, 28, 30, 34, 35, 36, 60, 61, 62, 63, 68, 69, 70, 75, 76, 77}))
+  if ((type >= 0 && type <= 9) || is({21, 22, 23, 28, 30, 34, 35, 36, 60, 61, 62, 63, 68, 69, 70, 75, 76, 77}))
     return {};
   in.fail_whole("cell type " + std::to_string(type) + " is not known");
 }
@@ -72,8 +71,8 @@ void order_mid_edges(FileMesh& mesh, const Cursor& in) {
 
 Index node_at(const Cursor& in, std::int64_t number, std::int64_t first, Index num_nodes) {
   if (number < first || number - first >= num_nodes)
-    in.fail("node " + std::to_string(number) + " does not exist: nodes are numbered " +
-            std::to_string(first) + " … " + std::to_string(first + num_nodes - 1));
+    in.fail("node " + std::to_string(number) + " does not exist: nodes are numbered " + std::to_string(first) + " … " +
+            std::to_string(first + num_nodes - 1));
   return number - first;
 }
 
@@ -84,8 +83,8 @@ void add_vtk_cells(const VtkCells& cells, Index first_node, const Cursor& in, Fi
     in.fail_whole("cell " + std::to_string(c) + " " + what);
   };
   if (static_cast<Index>(cells.offsets.size()) != num_cells + 1)
-    in.fail_whole("there are " + std::to_string(cells.offsets.size()) + " cells and " +
-                  std::to_string(num_cells) + " cell types");
+    in.fail_whole("there are " + std::to_string(cells.offsets.size()) + " cells and " + std::to_string(num_cells) +
+                  " cell types");
   auto first_cell = mesh.num_cells() + mesh.num_lower;
   for (const auto& [kind, count] : mesh.other_solid) first_cell += count;
   const bool has_region = static_cast<Index>(cells.region.size()) == num_cells;
@@ -133,9 +132,8 @@ int to_region(double value) {
 bool is_region_array(std::string_view name) {
   std::string lower(name);
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  for (const char* known :
-       {"region", "region_id", "regionid", "material", "material_id", "materialid", "material_ids",
-        "materialids", "gmsh:physical", "medit:ref", "tetgen:ref", "cellentityids", "physical_ids"})
+  for (const char* known : {"region", "region_id", "regionid", "material", "material_id", "materialid", "material_ids",
+                            "materialids", "gmsh:physical", "medit:ref", "tetgen:ref", "cellentityids", "physical_ids"})
     if (lower == known) return true;
   return false;
 }

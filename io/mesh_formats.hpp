@@ -13,7 +13,7 @@ namespace supple {
 struct FileMesh {
   std::string format;
   std::vector<Point> nodes;
-  std::vector<Tet> tets;                         ///< the corners of tets of any order
+  std::vector<Tet> tets;                        ///< the corners of tets of any order
   std::vector<std::array<Index, 6>> mid_edges;  ///< of the tets of second order, in turn; as QuadraticTet has them
   std::vector<std::array<Index, 8>> hexahedra;  ///< as TrilinearHex has them
   std::vector<int> region;                      ///< one a tet or hexahedron, in order of the file, or empty

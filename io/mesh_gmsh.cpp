@@ -116,9 +116,7 @@ class GmshReader {
   }
 
   // One number in the file's mode.
-  std::int64_t integer(std::string_view what) {
-    return is_binary_ ? in_.take<std::int32_t>(what) : in_.integer(what);
-  }
+  std::int64_t integer(std::string_view what) { return is_binary_ ? in_.take<std::int32_t>(what) : in_.integer(what); }
   std::int64_t size(std::string_view what) {
     if (!is_binary_) return in_.integer(what);
     return size_of_size_ == 8 ? in_.take<std::int64_t>(what) : in_.take<std::int32_t>(what);
@@ -184,8 +182,7 @@ class GmshReader {
           for (Index k = 0; k < n; ++k) numbers.push_back(size("a node tag"));
           for (Index k = 0; k < n; ++k) {
             read_point();
-            for (std::int64_t c = 0; parametric && c < std::min<std::int64_t>(dim, 3); ++c)
-              real("a parameter");
+            for (std::int64_t c = 0; parametric && c < std::min<std::int64_t>(dim, 3); ++c) real("a parameter");
           }
         }
         if (static_cast<Index>(numbers.size()) != num_nodes)
@@ -245,8 +242,8 @@ class GmshReader {
         const ElementType type = read_type();
         const Index in_group = is_binary_ ? integer("the number of elements that follow") : 1;
         if (in_group < 1 || in_group > num_elements - k)
-          in_.fail("a group of " + std::to_string(in_group) + " elements where " +
-                   std::to_string(num_elements - k) + " are left");
+          in_.fail("a group of " + std::to_string(in_group) + " elements where " + std::to_string(num_elements - k) +
+                   " are left");
         const std::int64_t num_tags = integer("the number of tags");
         if (num_tags < 0) in_.fail("the number of tags is negative");
         for (Index j = 0; j < in_group; ++j, ++k) {

@@ -45,8 +45,7 @@ void read_medit(Cursor& in, FileMesh& mesh) {
       read_cells("hexahedra", 8);
     } else if (std::isalpha(static_cast<unsigned char>(keyword[0]))) {
       // A section that a solid does not need: numbers up to the next keyword.
-      const bool is_solid =
-          keyword.starts_with("Hexa") || keyword.starts_with("Prism") || keyword.starts_with("Pyr");
+      const bool is_solid = keyword.starts_with("Hexa") || keyword.starts_with("Prism") || keyword.starts_with("Pyr");
       const bool is_lower = keyword == "Triangles" || keyword == "Quadrilaterals" || keyword == "Edges";
       const std::string kind(keyword);
       if (is_solid || is_lower) {
@@ -54,8 +53,8 @@ void read_medit(Cursor& in, FileMesh& mesh) {
         if (is_solid && count > 0) mesh.other_solid[kind] += count;
         if (is_lower) mesh.num_lower += count;
       }
-      for (std::string_view next = in.peek();
-           !next.empty() && !std::isalpha(static_cast<unsigned char>(next[0])); next = in.peek())
+      for (std::string_view next = in.peek(); !next.empty() && !std::isalpha(static_cast<unsigned char>(next[0]));
+           next = in.peek())
         in.word();
     } else {
       in.fail("expected a keyword such as Vertices, found \"" + std::string(keyword.substr(0, 40)) + "\"");

@@ -25,8 +25,7 @@ constexpr std::string_view formats_read =
     found = "the file is compressed (gzip); unpack it first";
   else if (is_word({"OFF", "COFF", "NOFF", "ply", "solid", "v", "vn", "mtllib"}))
     found = "the file looks like a triangle surface (" + std::string(word) + "), which has no tetrahedra";
-  else if (bytes.starts_with(std::string_view("\1\0\0\0", 4)) ||
-           bytes.starts_with(std::string_view("\0\0\0\1", 4)))
+  else if (bytes.starts_with(std::string_view("\1\0\0\0", 4)) || bytes.starts_with(std::string_view("\0\0\0\1", 4)))
     found = "the file looks like binary Medit (.meshb); save it as ASCII .mesh";
   else if (word == "$NOD")
     found = "the file is of Gmsh format 1; save it as 2.2 or 4.1";
@@ -81,8 +80,7 @@ FileMesh read_any(const std::filesystem::path& path) {
 enum class Kinds { Tets, All };
 
 void refuse_other_solids(const FileMesh& file, Kinds wanted, const std::string& name) {
-  const auto num_tets = static_cast<Index>(file.tets.size()),
-             num_hexahedra = static_cast<Index>(file.hexahedra.size());
+  const auto num_tets = static_cast<Index>(file.tets.size()), num_hexahedra = static_cast<Index>(file.hexahedra.size());
   std::string kinds;
   const auto add = [&](const std::string& kind) { kinds += (kinds.empty() ? "" : ", ") + kind; };
   for (const auto& [kind, count] : file.other_solid) add(std::to_string(count) + " " + kind);
@@ -96,10 +94,9 @@ void refuse_other_solids(const FileMesh& file, Kinds wanted, const std::string& 
   }
   if (num_tets + num_hexahedra == 0)
     throw InputError(name + ": holds no tetrahedra" + (wanted == Kinds::All ? " or hexahedra" : "") +
-                     (file.num_lower > 0
-                          ? " but " + plural(file.num_lower, "cell", "cells") +
-                                " of lower dimension; a surface must be filled with tetrahedra first"
-                          : std::string()));
+                     (file.num_lower > 0 ? " but " + plural(file.num_lower, "cell", "cells") +
+                                               " of lower dimension; a surface must be filled with tetrahedra first"
+                                         : std::string()));
 }
 
 template <std::size_t size>
@@ -159,7 +156,8 @@ Mesh finish(FileMesh& file, std::vector<std::array<Index, size>> cells, const st
   }
   mesh.nodes = keep_nodes_in_use(file.nodes, cells, file.numbers.node);
   if (const Index dropped = static_cast<Index>(file.nodes.size()) - mesh.num_nodes(); dropped > 0)
-    file.warnings.push_back(plural(dropped, "node belongs", "nodes belong") + " to no " + cell_word<size> + ": dropped");
+    file.warnings.push_back(plural(dropped, "node belongs", "nodes belong") + " to no " + cell_word<size> +
+                            ": dropped");
   std::vector<std::array<Index, size>>& own = cells_of(mesh);
   own = std::move(cells);
   if (std::any_of(file.region.begin(), file.region.end(), [](int tag) { return tag != 0; })) {

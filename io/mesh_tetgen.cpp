@@ -24,8 +24,7 @@ void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh) {
   };
   const Index num_nodes = node_file.count("nodes", 7);
   if (node_file.integer_in_line("the dimension") != 3) node_file.fail("expected dimension 3");
-  const std::int64_t num_extra =
-      num_columns(node_file, "attributes") + num_columns(node_file, "boundary markers");
+  const std::int64_t num_extra = num_columns(node_file, "attributes") + num_columns(node_file, "boundary markers");
   node_file.rest_of_line();
   mesh.nodes.resize(num_nodes);
   std::int64_t first = 1;

@@ -94,8 +94,7 @@ void read_vega(Cursor& in, FileMesh& mesh) {
     } else if (const auto set = sets.find(regions[r].set); set != sets.end()) {
       for (const std::int64_t number : set->second) {
         if (number < first_cell || number - first_cell >= num_cells)
-          in.fail("set " + set->first + " names element " + std::to_string(number) +
-                  ", which does not exist");
+          in.fail("set " + set->first + " names element " + std::to_string(number) + ", which does not exist");
         mesh.region[number - first_cell] = tag;
       }
     } else {

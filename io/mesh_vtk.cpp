@@ -8,8 +8,7 @@ std::size_t size_of(std::string_view type) {
   if (type == "char" || type == "unsigned_char") return 1;
   if (type == "short" || type == "unsigned_short") return 2;
   if (type == "int" || type == "unsigned_int" || type == "float") return 4;
-  if (type == "long" || type == "unsigned_long" || type == "double" || type == "vtktypeint64" ||
-      type == "vtkIdType")
+  if (type == "long" || type == "unsigned_long" || type == "double" || type == "vtktypeint64" || type == "vtkIdType")
     return 8;
   return 0;
 }
@@ -42,8 +41,7 @@ class LegacyVtkReader {
         if (keyword == "CELL_DATA") read_regions();
         break;
       } else
-        in_.fail("expected POINTS, CELLS or CELL_TYPES, found \"" + std::string(keyword.substr(0, 40)) +
-                 "\"");
+        in_.fail("expected POINTS, CELLS or CELL_TYPES, found \"" + std::string(keyword.substr(0, 40)) + "\"");
     }
     add_vtk_cells(cells_, 0, in_, mesh_);
   }
@@ -131,8 +129,7 @@ class LegacyVtkReader {
   /// search.
   void read_regions() {
     const Index count = in_.count("cells", is_binary_ ? 1 : 0);
-    for (std::string_view keyword = in_.word(); keyword == "SCALARS" || keyword == "FIELD";
-         keyword = in_.word()) {
+    for (std::string_view keyword = in_.word(); keyword == "SCALARS" || keyword == "FIELD"; keyword = in_.word()) {
       if (keyword == "FIELD") {
         read_field(/*is_cell_data=*/true);
         continue;

@@ -106,8 +106,7 @@ class VtuReader {
       const std::string_view encoding =
           document_.child("VTKFile").child("AppendedData").attribute("encoding").as_string("raw");
       appended_is_raw_ = encoding == "raw";
-      if (!appended_is_raw_ && encoding != "base64")
-        in_.fail_whole("expected appended data encoded raw or base64");
+      if (!appended_is_raw_ && encoding != "base64") in_.fail_whole("expected appended data encoded raw or base64");
       return;
     }
     Cursor place = in_;
@@ -119,13 +118,11 @@ class VtuReader {
     const auto num_nodes = static_cast<Index>(count(piece, "NumberOfPoints"));
     const auto num_cells = static_cast<Index>(count(piece, "NumberOfCells"));
     const pugi::xml_node points = piece.child("Points").child("DataArray");
-    if (points.attribute("NumberOfComponents").as_int() != 3)
-      in_.fail_whole("expected points of 3 components");
+    if (points.attribute("NumberOfComponents").as_int() != 3) in_.fail_whole("expected points of 3 components");
     const std::vector<double> coordinates = numbers<double>(points, "Points");
-    if (num_nodes > static_cast<Index>(coordinates.size()) ||
-        3 * num_nodes != static_cast<Index>(coordinates.size()))
-      in_.fail_whole("expected " + std::to_string(num_nodes) + " points, found " +
-                     std::to_string(coordinates.size()) + " coordinates");
+    if (num_nodes > static_cast<Index>(coordinates.size()) || 3 * num_nodes != static_cast<Index>(coordinates.size()))
+      in_.fail_whole("expected " + std::to_string(num_nodes) + " points, found " + std::to_string(coordinates.size()) +
+                     " coordinates");
     const auto first_node = static_cast<Index>(mesh_.nodes.size());
     for (Index v = 0; v < num_nodes; ++v) mesh_.nodes.emplace_back(Point::Map(&coordinates[3 * v]));
 
@@ -182,8 +179,7 @@ class VtuReader {
         text.fail_whole("begins at " + std::to_string(offset) + ", behind the appended data");
       bytes = decode({text.name(), appended_.substr(offset), appended_is_raw_});
     } else {
-      text.fail_whole("expected the format ascii, binary or appended, found " +
-                      std::string(format.substr(0, 40)));
+      text.fail_whole("expected the format ascii, binary or appended, found " + std::string(format.substr(0, 40)));
     }
     return convert<Number>(bytes, array.attribute("type").value(), text);
   }
@@ -195,8 +191,7 @@ class VtuReader {
     const std::uint64_t first = header_words(stored, 1)[0];
     if (!is_compressed_) return stored.from(header_size_, first);
     if (first == 0) return {};
-    if (first > stored.text.size())
-      stored.fail("announces " + std::to_string(first) + " blocks, more than can follow");
+    if (first > stored.text.size()) stored.fail("announces " + std::to_string(first) + " blocks, more than can follow");
     const std::vector<std::uint64_t> header = header_words(stored, 3 + first);
     std::string bytes;
     std::size_t at = header.size() * header_size_;

@@ -21,8 +21,7 @@ std::string_view trim(std::string_view text) {
 std::optional<double> to_finite(std::string_view text) {
   text = trim(text);
   double value = 0;
-  const auto [rest, error] =
-      std::from_chars(text.data() + text.starts_with('+'), text.data() + text.size(), value);
+  const auto [rest, error] = std::from_chars(text.data() + text.starts_with('+'), text.data() + text.size(), value);
   if (error != std::errc() || rest != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
@@ -110,15 +109,13 @@ std::vector<Index> nodes_in_box(const Points& nodes, std::string_view box) {
   std::string_view rest = box;
   for (int k = 0; k < 6; ++k) {
     const std::size_t end = k == 5 ? rest.size() : rest.find(k == 2 ? ':' : ',');
-    const std::optional<double> value =
-        end == std::string_view::npos ? std::nullopt : to_finite(rest.substr(0, end));
+    const std::optional<double> value = end == std::string_view::npos ? std::nullopt : to_finite(rest.substr(0, end));
     if (!value) fail(box, expectation);
     bounds[k] = *value;
     if (k < 5) rest.remove_prefix(end + 1);
   }
   const Point lower(bounds[0], bounds[1], bounds[2]), upper(bounds[3], bounds[4], bounds[5]);
-  if ((lower.array() > upper.array()).any())
-    fail(box, "a lower bound is above its upper bound; " + expectation);
+  if ((lower.array() > upper.array()).any()) fail(box, "a lower bound is above its upper bound; " + expectation);
   return nodes_where(nodes.rows(), box, [&](Index v) {
     const Point x = nodes.row(v);
     return (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
@@ -154,8 +151,8 @@ std::vector<Index> nodes_with_label(const Points& nodes, const std::filesystem::
     int value = 0;
     const auto [rest, error] = std::from_chars(line.data(), line.data() + line.size(), value);
     if (error != std::errc() || rest != line.data() + line.size())
-      throw InputError(path.string() + ":" + std::to_string(line_number) + ": expected a whole number, the label of node " +
-                       std::to_string(node));
+      throw InputError(path.string() + ":" + std::to_string(line_number) +
+                       ": expected a whole number, the label of node " + std::to_string(node));
     if (node < nodes.rows() && value == label) selected.push_back(node);
     ++node;
   }

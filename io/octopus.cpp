@@ -55,15 +55,13 @@ Octopus::Octopus() {
     const auto radius = [](double t) { return 0.068 - 0.040 * t; };
     Arm arm;
     for (int j = 0; j < num_segments; ++j) {
-      const double t = static_cast<double>(j) / num_segments,
-                   t_next = static_cast<double>(j + 1) / num_segments;
+      const double t = static_cast<double>(j) / num_segments, t_next = static_cast<double>(j + 1) / num_segments;
       arm.segments.push_back({spline(controls, t), spline(controls, t_next), radius(t), radius(t_next)});
     }
     arm.centre = (controls.front() + controls[4]) / 2;
     arm.radius = 0;
     for (const Segment& s : arm.segments)
-      arm.radius =
-          std::max({arm.radius, (s.a - arm.centre).norm() + s.r_a, (s.b - arm.centre).norm() + s.r_b});
+      arm.radius = std::max({arm.radius, (s.a - arm.centre).norm() + s.r_a, (s.b - arm.centre).norm() + s.r_b});
     arms_.push_back(std::move(arm));
   }
 }

@@ -45,8 +45,7 @@ constexpr double margin = 0.05, caption_margin = 0.105, bar_margin = 0.18, capti
 void check(std::span<const PictureObject> objects, const PictureOptions& options) {
   const auto range = [](const char* name, double value, double low, double high) {
     require(low <= value && value <= high, std::string(name) + " of a picture is " + std::to_string(value) +
-                                               ", expected " + std::to_string(low) + " to " +
-                                               std::to_string(high));
+                                               ", expected " + std::to_string(low) + " to " + std::to_string(high));
   };
   range("width", options.width, 16, 10000);
   range("height", options.height, 16, 10000);
@@ -67,14 +66,13 @@ void check(std::span<const PictureObject> objects, const PictureOptions& options
         require(0 <= node && node < n,
                 name + " has a triangle with node " + std::to_string(node) + " of " + std::to_string(n));
     for (const Index triangle : object.highlighted)
-      require(0 <= triangle && triangle < static_cast<Index>(object.triangles.size()),
-              name + " highlights triangle " + std::to_string(triangle) + " of " +
-                  std::to_string(object.triangles.size()));
+      require(
+          0 <= triangle && triangle < static_cast<Index>(object.triangles.size()),
+          name + " highlights triangle " + std::to_string(triangle) + " of " + std::to_string(object.triangles.size()));
     if (object.scalar.size() > 0) require_size("scalar of " + name, object.scalar.size(), n);
     require(object.positions.allFinite() && object.reach.allFinite() && object.markers.allFinite(),
             name + " has a position that is not finite");
-    require(object.marker_radius >= 0 && std::isfinite(object.marker_radius),
-            name + " has a negative marker radius");
+    require(object.marker_radius >= 0 && std::isfinite(object.marker_radius), name + " has a negative marker radius");
     range("darkness of edges", object.edges, 0, 1);
   }
   require(any, "a picture has no triangle");
@@ -109,8 +107,7 @@ void fit_scale(std::span<const PictureObject> objects, const ScalarScale& scale,
   if (scale.map == ColourMap::Diverging) values.include(-values.low), values.include(-values.high);
   view.scalar_low = scale.low.value_or(values.low);
   view.scalar_high = scale.high.value_or(values.high);
-  require(std::isfinite(view.scalar_low) && std::isfinite(view.scalar_high) &&
-              view.scalar_low <= view.scalar_high,
+  require(std::isfinite(view.scalar_low) && std::isfinite(view.scalar_high) && view.scalar_low <= view.scalar_high,
           "the scale of a picture's scalars is empty");
 }
 
@@ -131,10 +128,8 @@ View fit_view(std::span<const PictureObject> objects, const PictureOptions& opti
   // Azimuth counts from the axis after the up axis: from z to x if y is up, from x to y if z is up.
   Index up_axis;
   camera.up.cwiseAbs().maxCoeff(&up_axis);
-  const Point first =
-      (Point::Unit((up_axis + 1) % 3) - camera.up * camera.up[(up_axis + 1) % 3]).normalized();
-  const double azimuth = camera.azimuth * std::numbers::pi / 180,
-               elevation = camera.elevation * std::numbers::pi / 180;
+  const Point first = (Point::Unit((up_axis + 1) % 3) - camera.up * camera.up[(up_axis + 1) % 3]).normalized();
+  const double azimuth = camera.azimuth * std::numbers::pi / 180, elevation = camera.elevation * std::numbers::pi / 180;
   const Point towards_camera = std::cos(azimuth) * first + std::sin(azimuth) * camera.up.cross(first);
   view.right = camera.up.cross(towards_camera).normalized();
   view.forward = -(std::cos(elevation) * towards_camera + std::sin(elevation) * camera.up).normalized();
@@ -174,10 +169,8 @@ View fit_view(std::span<const PictureObject> objects, const PictureOptions& opti
   // The free parts of the picture leave a window; its edges are four planes through the eye (or parallel
   // ones), and the closest eye is where opposite planes touch the points.
   const double W = options.width, H = options.height;
-  const bool captions =
-      std::ranges::any_of(objects, [](const auto& object) { return !object.caption.empty(); });
-  const double left = W / 2 - margin * H,
-               right = left - (has_bar(objects, options.scale) ? bar_margin * H : 0);
+  const bool captions = std::ranges::any_of(objects, [](const auto& object) { return !object.caption.empty(); });
+  const double left = W / 2 - margin * H, right = left - (has_bar(objects, options.scale) ? bar_margin * H : 0);
   const double top = H / 2 - margin * H, bottom = H / 2 - (captions ? caption_margin : margin) * H;
   require(left + right > 0, "a picture is too narrow for its colour bar");
   view.perspective = camera.field_of_view > 0;
@@ -185,8 +178,7 @@ View fit_view(std::span<const PictureObject> objects, const PictureOptions& opti
   Point eye = Point::Zero();  // along right and up
   if (view.perspective) {
     view.pixels = H / 2 / std::tan(camera.field_of_view * std::numbers::pi / 360);
-    const double r = right / view.pixels, l = left / view.pixels, t = top / view.pixels,
-                 b = bottom / view.pixels;
+    const double r = right / view.pixels, l = left / view.pixels, t = top / view.pixels, b = bottom / view.pixels;
     double to_r = -1e300, to_l = -1e300, to_t = -1e300, to_b = -1e300, nearest = 1e300;
     for_each_point([&](const Point& p) {
       const Point q = p - view.centre;
@@ -206,8 +198,7 @@ View fit_view(std::span<const PictureObject> objects, const PictureOptions& opti
       x.include((p - view.centre).dot(view.right));
       y.include((p - view.centre).dot(view.up));
     });
-    view.pixels =
-        std::min((left + right) / std::max(x.length(), 1e-12), (top + bottom) / std::max(y.length(), 1e-12));
+    view.pixels = std::min((left + right) / std::max(x.length(), 1e-12), (top + bottom) / std::max(y.length(), 1e-12));
     eye.x() = 0.5 * (x.low + x.high) - 0.5 * (right - left) / view.pixels;
     eye.y() = 0.5 * (y.low + y.high) - 0.5 * (top - bottom) / view.pixels;
   }
@@ -300,8 +291,7 @@ Scene build_scene(std::span<const PictureObject> objects, const PictureOptions& 
     }
     const std::size_t first_face = scene.faces.size();
     double volume = 0;  // six times; negative if the triangles are wound clockwise
-    const Point middle =
-        object.positions.rows() > 0 ? Point(object.positions.colwise().mean()) : Point::Zero();
+    const Point middle = object.positions.rows() > 0 ? Point(object.positions.colwise().mean()) : Point::Zero();
     const auto corner = [&](Index node) -> Point { return object.positions.row(node).transpose() - middle; };
     for (const Triangle& t : object.triangles) volume += corner(t[0]).dot(corner(t[1]).cross(corner(t[2])));
     for (const Triangle& triangle : object.triangles) {
@@ -314,8 +304,8 @@ Scene build_scene(std::span<const PictureObject> objects, const PictureOptions& 
     const double radius =
         object.marker_radius > 0 ? object.marker_radius : 0.012 * bounding_box(object.positions).diagonal();
     for (const auto& marker : object.markers.rowwise())
-      scene.balls.push_back({(marker.transpose() + shift).cast<float>(), static_cast<float>(radius),
-                             to_linear(object.highlight)});
+      scene.balls.push_back(
+          {(marker.transpose() + shift).cast<float>(), static_cast<float>(radius), to_linear(object.highlight)});
   }
   set_normals(scene);
   return scene;
@@ -333,8 +323,7 @@ struct Lamp {
   Vector3f towards, across, along;
   float radius;  // of the scene around the origin
   int size;
-  std::vector<float>
-      nearest;  // per texel, how far towards the lamp the scene reaches; nothing in the outermost ones
+  std::vector<float> nearest;  // per texel, how far towards the lamp the scene reaches; nothing in the outermost ones
 
   Lamp(const Vector3f& direction, float scene_radius, int map_size)
       : towards(direction.normalized()),
@@ -355,8 +344,7 @@ struct Lamp {
     std::vector<Vector3f> vertices(scene.vertices.size());
     std::ranges::transform(scene.vertices, vertices.begin(), [this](const Vector3f& p) { return to_map(p); });
     for (const Face& face : scene.faces) {
-      const Vector3f &a = vertices[face.vertices[0]], &b = vertices[face.vertices[1]],
-                     &c = vertices[face.vertices[2]];
+      const Vector3f &a = vertices[face.vertices[0]], &b = vertices[face.vertices[1]], &c = vertices[face.vertices[2]];
       const Vector3f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
       const int x0 = std::max(1, whole(std::ceil(low.x() - 0.5f))),
                 x1 = std::min(size - 2, whole(std::floor(high.x() - 0.5f)));
@@ -383,10 +371,8 @@ struct Lamp {
 
   /// Adds weight · cosine · share of light that reaches each point, by the four texels around it.
   void shine_on(const Surface& points, float weight, std::vector<float>& sum) const {
-    const float scale = 0.5f * static_cast<float>(size) / radius,
-                middle = 0.5f * static_cast<float>(size) - 0.5f;
-    const float off_surface = 1.8f * texel(), tolerance = 0.3f * texel(),
-                last = static_cast<float>(size) - 1.001f;
+    const float scale = 0.5f * static_cast<float>(size) / radius, middle = 0.5f * static_cast<float>(size) - 0.5f;
+    const float off_surface = 1.8f * texel(), tolerance = 0.3f * texel(), last = static_cast<float>(size) - 1.001f;
     const float *px = points.x[0].data(), *py = points.x[1].data(), *pz = points.x[2].data();
     const float *nx = points.n[0].data(), *ny = points.n[1].data(), *nz = points.n[2].data();
     const float *texels = nearest.data(), *above = texels + size;
@@ -396,13 +382,10 @@ struct Lamp {
 #pragma GCC ivdep
     for (int k = 0; k < count; ++k) {  // without branches, for the sake of vector instructions
       const float cosine = nx[k] * t[0] + ny[k] * t[1] + nz[k] * t[2];
-      const float qx = px[k] + off_surface * nx[k], qy = py[k] + off_surface * ny[k],
-                  qz = pz[k] + off_surface * nz[k];
-      const float x = middle + u[0] * qx + u[1] * qy + u[2] * qz,
-                  y = middle + v[0] * qx + v[1] * qy + v[2] * qz;
+      const float qx = px[k] + off_surface * nx[k], qy = py[k] + off_surface * ny[k], qz = pz[k] + off_surface * nz[k];
+      const float x = middle + u[0] * qx + u[1] * qy + u[2] * qz, y = middle + v[0] * qx + v[1] * qy + v[2] * qz;
       const float depth = t[0] * qx + t[1] * qy + t[2] * qz + tolerance;
-      const float x0 = x > 0 ? x : 0.f, xc = x0 < last ? x0 : last, y0 = y > 0 ? y : 0.f,
-                  yc = y0 < last ? y0 : last;
+      const float x0 = x > 0 ? x : 0.f, xc = x0 < last ? x0 : last, y0 = y > 0 ? y : 0.f, yc = y0 < last ? y0 : last;
       const int i = static_cast<int>(xc), j = static_cast<int>(yc), texel = j * stride + i;
       const float right = xc - static_cast<float>(i), left = 1 - right, up = yc - static_cast<float>(j);
       const float t00 = texels[texel], t01 = texels[texel + 1], t10 = above[texel], t11 = above[texel + 1];
@@ -444,13 +427,12 @@ Lighting set_up_lights(const Scene& scene, const View& view) {
   for (int k = 0; k < num_key_lights; ++k) {
     const float r = key_radius * std::sqrt((static_cast<float>(k) + 0.5f) / num_key_lights),
                 angle = golden_angle * static_cast<float>(k);
-    light.key.emplace_back(light.key_towards + r * (std::cos(angle) * across + std::sin(angle) * along),
-                           radius, key_map_size);
+    light.key.emplace_back(light.key_towards + r * (std::cos(angle) * across + std::sin(angle) * along), radius,
+                           key_map_size);
   }
   light.key_on_ground = light.key_towards.dot(up);
-  parallel_for(num_sky_lights + num_key_lights, [&](Index k) {
-    (k < num_sky_lights ? light.sky[k] : light.key[k - num_sky_lights]).look_at(scene);
-  });
+  parallel_for(num_sky_lights + num_key_lights,
+               [&](Index k) { (k < num_sky_lights ? light.sky[k] : light.key[k - num_sky_lights]).look_at(scene); });
   return light;
 }
 
@@ -491,17 +473,16 @@ void gather_light(const Lighting& light, std::vector<Place>& places) {
 Vector3f seen(const Place& place, const Lighting& light, const Vector3f& to_eye) {
   const Vector3f& n = place.normal;
   const float height = std::max(0.f, light.up.dot(place.position) - light.ground_height);
-  const float bounce =
-      bounce_strength * 0.5f * (1 - n.dot(light.up)) * std::min(1.f, 0.35f + height / light.radius);
+  const float bounce = bounce_strength * 0.5f * (1 - n.dot(light.up)) * std::min(1.f, 0.35f + height / light.radius);
   const Vector3f half = (light.key_towards + to_eye).normalized();
   const float lit = place.key / std::max(0.05f, n.dot(light.key_towards));
   const float glint = gloss * std::pow(std::max(0.f, n.dot(half)), gloss_exponent) * std::min(1.f, lit);
   const float grazing = std::pow(1 - std::clamp(n.dot(to_eye), 0.f, 1.f), 3.f);
-  const float rim = rim_strength * grazing * (0.25f + std::max(0.f, n.dot(light.rim_towards))) *
-                    std::min(1.f, 2 * place.sky);
+  const float rim =
+      rim_strength * grazing * (0.25f + std::max(0.f, n.dot(light.rim_towards))) * std::min(1.f, 2 * place.sky);
   const Vector3f colour =
-      place.albedo.cwiseProduct(key_strength * place.key * key_colour +
-                                sky_strength * place.sky * sky_colour + Vector3f::Constant(bounce)) +
+      place.albedo.cwiseProduct(key_strength * place.key * key_colour + sky_strength * place.sky * sky_colour +
+                                Vector3f::Constant(bounce)) +
       Vector3f::Constant(glint + rim);
   return colour.unaryExpr([](float c) { return c / std::pow(1 + c * c * c * c, 0.25f); });
 }
@@ -552,9 +533,7 @@ struct Lens {
     const float scale = magnification(z);
     return {middle_x + scale * right.dot(q), middle_y - scale * up.dot(q), nearness(z), true};
   }
-  Vector3f to_eye(const Vector3f& p) const {
-    return perspective ? (eye - p).normalized() : Vector3f(-forward);
-  }
+  Vector3f to_eye(const Vector3f& p) const { return perspective ? (eye - p).normalized() : Vector3f(-forward); }
 };
 
 /// Pixels are drawn in bands of rows, each by one thread in buffers that stay in the cache.
@@ -572,8 +551,7 @@ class Painter {
         ground_(options.ground),
         image_(options.width, options.height) {
     projected_.resize(scene.vertices.size());
-    std::ranges::transform(scene.vertices, projected_.begin(),
-                           [this](const Vector3f& p) { return lens_.project(p); });
+    std::ranges::transform(scene.vertices, projected_.begin(), [this](const Vector3f& p) { return lens_.project(p); });
     num_bands_ = (height_ + band_rows - 1) / band_rows;
     faces_of_band_.resize(num_bands_);
     for (std::uint32_t f = 0; f < scene.faces.size(); ++f) {
@@ -668,8 +646,7 @@ class Painter {
     }
     /// Distance in pixels to the nearest edge.
     float to_edge(const Vector3f& at) const {
-      return std::min(
-          {at[0] / std::hypot(bx + cx, by + cy), at[1] / std::hypot(bx, by), at[2] / std::hypot(cx, cy)});
+      return std::min({at[0] / std::hypot(bx + cx, by + cy), at[1] / std::hypot(bx, by), at[2] / std::hypot(cx, cy)});
     }
   };
 
@@ -706,8 +683,7 @@ class Painter {
                   const float dx = (x - disc.x) / disc.radius, dy = (y - disc.y) / disc.radius,
                               rest = 1 - dx * dx - dy * dy;
                   if (!(rest >= 0)) return;
-                  const float nearness =
-                      lens_.nearness(std::max(lens_.near, disc.z - ball.radius * std::sqrt(rest)));
+                  const float nearness = lens_.nearness(std::max(lens_.near, disc.z - ball.radius * std::sqrt(rest)));
                   if (nearness <= band.ball_nearness[sample]) return;
                   band.ball_nearness[sample] = nearness;
                   band.ball[sample] = k;
@@ -721,12 +697,10 @@ class Painter {
     const Barycentric barycentric(a, b, c);
     const Vector3f at = barycentric.at(x, y).cwiseMax(0.f);
     // On the screen, what is linear in space is linear after division by depth.
-    Vector3f share =
-        lens_.perspective ? Vector3f(at[0] * a.nearness, at[1] * b.nearness, at[2] * c.nearness) : at;
+    Vector3f share = lens_.perspective ? Vector3f(at[0] * a.nearness, at[1] * b.nearness, at[2] * c.nearness) : at;
     share /= share.sum();
     Place place;
-    place.position =
-        share[0] * scene_.vertices[va] + share[1] * scene_.vertices[vb] + share[2] * scene_.vertices[vc];
+    place.position = share[0] * scene_.vertices[va] + share[1] * scene_.vertices[vb] + share[2] * scene_.vertices[vc];
     place.normal = share[0] * face.normals[0] + share[1] * face.normals[1] + share[2] * face.normals[2];
     place.normal = place.normal.stableNormalized();
     // A normal that turns away belongs to the other side of a sheet, or was smoothed around the edge of what
@@ -736,9 +710,10 @@ class Painter {
     if (const float facing = place.normal.dot(to_eye); facing < 0)
       place.normal = (place.normal - facing * to_eye).normalized();
     const PictureObject& object = objects_[face.object];
-    place.albedo = face.highlighted ? to_linear(object.highlight)
-                                    : Vector3f(share[0] * scene_.albedo[va] + share[1] * scene_.albedo[vb] +
-                                               share[2] * scene_.albedo[vc]);
+    place.albedo =
+        face.highlighted
+            ? to_linear(object.highlight)
+            : Vector3f(share[0] * scene_.albedo[va] + share[1] * scene_.albedo[vb] + share[2] * scene_.albedo[vc]);
     if (object.edges > 0) {
       constexpr float line = 0.55f;  // half its width in pixels
       const float covered = std::clamp(line + 0.5f - barycentric.to_edge(at), 0.f, 1.f);
@@ -752,9 +727,8 @@ class Painter {
     const BallOnScreen disc = on_screen(ball);
     const float dx = (x - disc.x) / disc.radius, dy = (y - disc.y) / disc.radius;
     Place place;
-    place.normal =
-        (dx * lens_.right - dy * lens_.up - std::sqrt(std::max(0.f, 1 - dx * dx - dy * dy)) * lens_.forward)
-            .normalized();
+    place.normal = (dx * lens_.right - dy * lens_.up - std::sqrt(std::max(0.f, 1 - dx * dx - dy * dy)) * lens_.forward)
+                       .normalized();
     place.position = ball.centre + ball.radius * place.normal;
     place.albedo = ball.albedo;
     place.shaded = false;
@@ -771,8 +745,7 @@ class Painter {
     for (int j = 0; j < samples_; ++j)
       for (int i = 0; i < samples_; ++i) {
         const std::size_t sample = corner + static_cast<std::size_t>(j) * band.columns + i;
-        uniform =
-            uniform && band.face[sample] == first && (band.ball.empty() || band.ball[sample] == nothing);
+        uniform = uniform && band.face[sample] == first && (band.ball.empty() || band.ball[sample] == nothing);
       }
     if (uniform) {
       if (first == nothing) {
@@ -793,8 +766,7 @@ class Painter {
       for (std::size_t k = before; k < places.size(); ++k) {
         Place& same = places[k];
         if (same.shaded != place.shaded ||
-            (same.position / same.weight - place.position).squaredNorm() >
-                std::pow(0.02f * light_.radius, 2.f) ||
+            (same.position / same.weight - place.position).squaredNorm() > std::pow(0.02f * light_.radius, 2.f) ||
             same.normal.dot(place.normal) < 0.8f * same.normal.norm())
           continue;
         same.position += share * place.position;
@@ -814,10 +786,9 @@ class Painter {
     for (int j = 0; j < samples_; ++j)
       for (int i = 0; i < samples_; ++i) {
         const std::size_t sample = corner + static_cast<std::size_t>(j) * band.columns + i;
-        const float sx =
-            static_cast<float>(x) + (static_cast<float>(i) + 0.5f) / static_cast<float>(samples_);
-        const float sy = static_cast<float>(band.first_row + y) +
-                         (static_cast<float>(j) + 0.5f) / static_cast<float>(samples_);
+        const float sx = static_cast<float>(x) + (static_cast<float>(i) + 0.5f) / static_cast<float>(samples_);
+        const float sy =
+            static_cast<float>(band.first_row + y) + (static_cast<float>(j) + 0.5f) / static_cast<float>(samples_);
         float rest = weight;
         if (!band.ball.empty() && band.ball[sample] != nothing) {
           const float opacity = band.ball_nearness[sample] > band.nearness[sample] ? 1 : hidden_marker;
@@ -852,8 +823,7 @@ class Painter {
 
   /// The background, darkened by what the ground lacks of light; shadows are soft, so every other pixel
   /// suffices.
-  void add_background(const Band& band, const std::vector<float>& uncovered,
-                      std::vector<Vector3f>& colours) const {
+  void add_background(const Band& band, const std::vector<float>& uncovered, std::vector<Vector3f>& colours) const {
     const int columns = width_ / ground_step + 2, rows = band.rows / ground_step + 2;
     std::vector<float> shade(static_cast<std::size_t>(columns) * rows, 1.f);
     if (ground_) {
@@ -862,8 +832,7 @@ class Painter {
         for (int x = 0; x < width_; ++x)
           if (uncovered[static_cast<std::size_t>(y) * width_ + x] > 0) {
             const std::size_t corner = static_cast<std::size_t>(y / ground_step) * columns + x / ground_step;
-            wanted[corner] = wanted[corner + 1] = wanted[corner + columns] = wanted[corner + columns + 1] =
-                true;
+            wanted[corner] = wanted[corner + 1] = wanted[corner + columns] = wanted[corner + columns + 1] = true;
           }
       std::vector<Place> places;
       Place node;
@@ -889,13 +858,12 @@ class Painter {
       for (int x = 0; x < width_; ++x) {
         const std::size_t pixel = static_cast<std::size_t>(y) * width_ + x;
         if (uncovered[pixel] == 0) continue;
-        const float u = (static_cast<float>(x) + 0.5f) / ground_step,
-                    v = (static_cast<float>(y) + 0.5f) / ground_step;
+        const float u = (static_cast<float>(x) + 0.5f) / ground_step, v = (static_cast<float>(y) + 0.5f) / ground_step;
         const int i = static_cast<int>(u), j = static_cast<int>(v);
         const float s = u - static_cast<float>(i), t = v - static_cast<float>(j);
         const float* corner = shade.data() + static_cast<std::size_t>(j) * columns + i;
-        const float here = (1 - t) * ((1 - s) * corner[0] + s * corner[1]) +
-                           t * ((1 - s) * corner[columns] + s * corner[columns + 1]);
+        const float here =
+            (1 - t) * ((1 - s) * corner[0] + s * corner[1]) + t * ((1 - s) * corner[columns] + s * corner[columns + 1]);
         const Vector3f tint(std::pow(here, 1.06f), here, std::pow(here, 0.94f));  // shadows are a little blue
         colours[pixel] += uncovered[pixel] * background.cwiseProduct(tint);
       }
@@ -930,39 +898,34 @@ void draw_captions(Image& image, std::span<const PictureObject> objects, const V
     if (width > room) size *= std::max(0.4, room / width);
   }
   for (std::size_t k = 0; k < count; ++k)
-    draw_text(image, view.caption_x[k], image.height * (1 - 0.45 * caption_margin), objects[k].caption, size,
-              rgb(ink), TextAlign::Centre);
+    draw_text(image, view.caption_x[k], image.height * (1 - 0.45 * caption_margin), objects[k].caption, size, rgb(ink),
+              TextAlign::Centre);
 }
 
 void draw_bar(Image& image, const ScalarScale& scale, const View& view) {
   const double H = image.height, size = 0.85 * caption_size * H;
   const int top = static_cast<int>(0.27 * H), bottom = static_cast<int>(0.73 * H);
-  const int left = static_cast<int>(image.width - 0.16 * H),
-            right = left + std::max(4, static_cast<int>(0.02 * H));
+  const int left = static_cast<int>(image.width - 0.16 * H), right = left + std::max(4, static_cast<int>(0.02 * H));
   for (int y = top; y < bottom; ++y)
     for (int x = std::max(0, left); x < right; ++x)
       image.set(x, y, map_colour(scale.map, 1 - (y + 0.5 - top) / (bottom - top)));
   for (const double share : {0.0, 0.5, 1.0}) {
     char number[32];
-    std::snprintf(number, sizeof number, "%.4g",
-                  view.scalar_low + share * (view.scalar_high - view.scalar_low));
+    std::snprintf(number, sizeof number, "%.4g", view.scalar_low + share * (view.scalar_high - view.scalar_low));
     std::string text(number);
     if (text.starts_with('-')) text.replace(0, 1, "−");
     draw_text(image, right + 0.6 * size, bottom + share * (top - bottom) + 0.5 * size, text, size, rgb(ink));
   }
   const double end = image.width - 0.5 * margin * H, width = text_width(scale.label, size);
-  draw_text(image, std::min(end - width, static_cast<double>(left)), top - 1.8 * size, scale.label, size,
-            rgb(ink));
+  draw_text(image, std::min(end - width, static_cast<double>(left)), top - 1.8 * size, scale.label, size, rgb(ink));
 }
 
 }  // namespace
 
 Image draw_picture(std::span<const PictureObject> objects, const PictureOptions& options, const View& view) {
   check(objects, options);
-  require_size("offsets of the view", static_cast<Index>(view.offsets.size()),
-               static_cast<Index>(objects.size()));
-  require_size("captions of the view", static_cast<Index>(view.caption_x.size()),
-               static_cast<Index>(objects.size()));
+  require_size("offsets of the view", static_cast<Index>(view.offsets.size()), static_cast<Index>(objects.size()));
+  require_size("captions of the view", static_cast<Index>(view.caption_x.size()), static_cast<Index>(objects.size()));
   const Scene scene = build_scene(objects, options, view);
   const Lighting light = set_up_lights(scene, view);
   Image image = Painter(scene, light, objects, options, view).paint();

@@ -46,7 +46,7 @@ enum class Arrangement {
 struct ScalarScale {
   ColourMap map = ColourMap::Sequential;
   std::optional<double> low = {}, high = {};  ///< the objects' own least and largest value unless given
-  std::string label = {};  ///< with unit; if not empty, a colour bar is drawn beside the objects
+  std::string label = {};                     ///< with unit; if not empty, a colour bar is drawn beside the objects
 };
 
 struct PictureOptions {

@@ -59,8 +59,7 @@ Run run(std::vector<std::string> command, std::string_view input) {
     std::string bytes;
     std::array<char, 1 << 14> block;
     std::rewind(file);
-    while (const std::size_t count = std::fread(block.data(), 1, block.size(), file))
-      bytes.append(block.data(), count);
+    while (const std::size_t count = std::fread(block.data(), 1, block.size(), file)) bytes.append(block.data(), count);
     return bytes;
   };
   const File in = temporary(), out = temporary(), messages = temporary();
@@ -113,9 +112,7 @@ void check(const Plot& plot) {
 
 /// The corner of the plot that holds the fewest points: where the legend hides the least.
 std::string emptiest_corner(const Plot& plot) {
-  const auto along = [](const Axis& axis, double value) {
-    return axis.scale == Scale::Log ? std::log(value) : value;
-  };
+  const auto along = [](const Axis& axis, double value) { return axis.scale == Scale::Log ? std::log(value) : value; };
   std::vector<Eigen::Array2d> points;
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const PlotSeries& series : plot.series)
@@ -143,8 +140,8 @@ std::string emptiest_corner(const Plot& plot) {
 std::string axis_commands(const char* name, const Axis& axis) {
   const std::string x(name);
   std::string commands = "set " + x + "label " + gnuplot_string(axis.label) + " noenhanced\n";
-  commands += "set " + x + "range [" + (axis.low ? text(*axis.low) : "*") + ":" +
-              (axis.high ? text(*axis.high) : "*") + "]\n";
+  commands +=
+      "set " + x + "range [" + (axis.low ? text(*axis.low) : "*") + ":" + (axis.high ? text(*axis.high) : "*") + "]\n";
   if (axis.scale == Scale::Log && axis.ticks.empty())
     commands += "set logscale " + x + " 10\nset format " + x + " '10^{%L}'\nset m" + x + "tics 10\n";
   else
@@ -157,8 +154,7 @@ std::string axis_commands(const char* name, const Axis& axis) {
 
 std::string style_commands(PlotStyle style, std::size_t series) {
   const std::string colour = " linecolor rgb '" + std::string(palette[series % palette.size()]) + "'";
-  const std::string points =
-      " pointsize 1 pointtype " + std::to_string(point_types[series % point_types.size()]);
+  const std::string points = " pointsize 1 pointtype " + std::to_string(point_types[series % point_types.size()]);
   switch (style) {
     case PlotStyle::Line:
       return "with lines linewidth 2" + colour;
@@ -186,8 +182,7 @@ std::string script(const Plot& plot, const std::string& terminal) {
       " Left reverse opaque noenhanced samplen 2.5 spacing 1.15 width 1 textcolor rgb '#303030'\n"
       "set lmargin 11\nset rmargin 3\nset datafile missing 'NaN'\n";
   if (!plot.title.empty())
-    commands += "set title " + gnuplot_string(plot.title) +
-                " noenhanced font 'Helvetica,17' textcolor rgb '#202020'\n";
+    commands += "set title " + gnuplot_string(plot.title) + " noenhanced font 'Helvetica,17' textcolor rgb '#202020'\n";
   commands += axis_commands("x", plot.x) + axis_commands("y", plot.y);
 
   std::string curves;
@@ -197,8 +192,7 @@ std::string script(const Plot& plot, const std::string& terminal) {
     commands += block + " << END\n";
     for (Index i = 0; i < series.x.size(); ++i)
       // An empty line interrupts the curve.
-      commands +=
-          shown(plot, series.x[i], series.y[i]) ? text(series.x[i]) + " " + text(series.y[i]) + "\n" : "\n";
+      commands += shown(plot, series.x[i], series.y[i]) ? text(series.x[i]) + " " + text(series.y[i]) + "\n" : "\n";
     commands += "END\n";
     curves += (k > 0 ? ", " : "") + block + " using 1:2 " + style_commands(series.style, k) +
               (series.name.empty() ? " notitle" : " title " + gnuplot_string(series.name) + " noenhanced");
@@ -222,11 +216,9 @@ void draw_plot(const std::filesystem::path& path, const Plot& plot) {
   if (gnuplot.error == ENOENT)
     throw InputError(path.string() + ": cannot be drawn: gnuplot is not installed (Debian: gnuplot-nox)");
   if (gnuplot.error != 0)
-    throw InputError(path.string() +
-                     ": cannot be drawn: gnuplot does not start: " + std::strerror(gnuplot.error));
+    throw InputError(path.string() + ": cannot be drawn: gnuplot does not start: " + std::strerror(gnuplot.error));
   if (gnuplot.status != 0 || gnuplot.output.empty())
-    throw InputError(path.string() +
-                     ": cannot be drawn: gnuplot failed: " + gnuplot.messages.substr(0, 2000));
+    throw InputError(path.string() + ": cannot be drawn: gnuplot failed: " + gnuplot.messages.substr(0, 2000));
   write_file(path, gnuplot.output);
 }
 

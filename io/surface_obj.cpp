@@ -11,8 +11,7 @@ std::int64_t node_number(const Cursor& in, std::string_view corner) {
   std::int64_t value = 0;
   const auto [rest, error] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (error != std::errc() || rest != number.data() + number.size() || value == 0)
-    in.fail("expected a corner such as 7, 7/1, 7/1/3 or 7//3, found \"" + std::string(corner.substr(0, 40)) +
-            "\"");
+    in.fail("expected a corner such as 7, 7/1, 7/1/3 or 7//3, found \"" + std::string(corner.substr(0, 40)) + "\"");
   return value;
 }
 

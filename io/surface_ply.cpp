@@ -72,8 +72,8 @@ class PlyReader {
     in_.expect("format");
     const std::string format(in_.word_in_line());
     if (format != "ascii" && format != "binary_little_endian" && format != "binary_big_endian")
-      in_.fail("expected format ascii, binary_little_endian or binary_big_endian, found \"" +
-               format.substr(0, 40) + "\"");
+      in_.fail("expected format ascii, binary_little_endian or binary_big_endian, found \"" + format.substr(0, 40) +
+               "\"");
     in_.rest_of_line();
     for (std::string_view keyword = in_.word(); keyword != "end_header"; keyword = in_.word()) {
       if (keyword == "element") {
@@ -100,8 +100,7 @@ class PlyReader {
                                                                  : std::string("binary, little endian"));
     for (const Element& element : elements_)
       if (element.name == "vertex") num_nodes_ = element.count;
-    if (format != "ascii")
-      in_.set_binary(format == "binary_big_endian" ? std::endian::big : std::endian::little);
+    if (format != "ascii") in_.set_binary(format == "binary_big_endian" ? std::endian::big : std::endian::little);
   }
 
   Property read_property() {

@@ -16,8 +16,8 @@ namespace {
     found = "the file is empty";
   else if (bytes.starts_with("\x1f\x8b"))
     found = "the file is compressed (gzip); unpack it first";
-  else if (word.starts_with('$') || word.starts_with('*') || word == "MeshVersionFormatted" ||
-           word.starts_with("<") || bytes.starts_with("# vtk"))
+  else if (word.starts_with('$') || word.starts_with('*') || word == "MeshVersionFormatted" || word.starts_with("<") ||
+           bytes.starts_with("# vtk"))
     found = "the file looks like a mesh of solids (Gmsh, Medit, VegaFEM or VTK)";
   throw InputError(name + ": " + found + "; expected a surface: OBJ, OFF, PLY or STL");
 }
@@ -71,8 +71,7 @@ bool cut_into_fan(const FileSurface& surface, std::span<const Index> face, std::
 }
 
 /// Triangles of all faces, and the number of the face that each comes from.
-std::vector<Triangle> cut_faces(FileSurface& surface, std::vector<std::int64_t>& numbers,
-                                const std::string& name) {
+std::vector<Triangle> cut_faces(FileSurface& surface, std::vector<std::int64_t>& numbers, const std::string& name) {
   std::vector<Triangle> triangles, fan;
   Index num_polygons = 0, num_small = 0;
   for (Index f = 0; f < surface.num_faces(); ++f) {
@@ -97,18 +96,15 @@ std::vector<Triangle> cut_faces(FileSurface& surface, std::vector<std::int64_t>&
     numbers.insert(numbers.end(), fan.size(), surface.first_number + f);
   }
   if (num_polygons > 0)
-    surface.warnings.push_back(plural(num_polygons, "polygon was", "polygons were") +
-                               " cut into fans of triangles");
+    surface.warnings.push_back(plural(num_polygons, "polygon was", "polygons were") + " cut into fans of triangles");
   if (num_small > 0)
-    surface.warnings.push_back(plural(num_small, "face has", "faces have") +
-                               " fewer than three corners: left out");
+    surface.warnings.push_back(plural(num_small, "face has", "faces have") + " fewer than three corners: left out");
   if (surface.num_lower > 0)
     surface.warnings.push_back(plural(surface.num_lower, "line or point", "lines and points") + " left out");
   return triangles;
 }
 
-void warn_of_surprises(const TriangleMesh& mesh, const MeshNumbers& numbers,
-                       std::vector<std::string>& warnings) {
+void warn_of_surprises(const TriangleMesh& mesh, const MeshNumbers& numbers, std::vector<std::string>& warnings) {
   if (const Index count = num_coincident_nodes(mesh.nodes); count > 0)
     warnings.push_back(plural(count, "node lies", "nodes lie") + " where another node is: not merged");
   if (const Index count = connected_components(mesh).count; count > 1)
@@ -123,8 +119,8 @@ void warn_of_surprises(const TriangleMesh& mesh, const MeshNumbers& numbers,
   if (worst < 1e-3) {
     std::array<char, 32> shown;
     std::snprintf(shown.data(), shown.size(), "%.2g", worst);
-    warnings.push_back("needles: the worst, triangle " + std::to_string(numbers.triangle[at]) +
-                       ", has radius ratio " + shown.data());
+    warnings.push_back("needles: the worst, triangle " + std::to_string(numbers.triangle[at]) + ", has radius ratio " +
+                       shown.data());
   }
 }
 

@@ -123,8 +123,7 @@ double parse_quantity(std::string_view text, std::string_view unit) {
   double value;
   const std::string_view number = text.starts_with('+') && !text.starts_with("+-") ? text.substr(1) : text;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (error != std::errc{} || !std::isfinite(value))
-    throw InputError("'" + std::string(text) + "' is not a quantity");
+  if (error != std::errc{} || !std::isfinite(value)) throw InputError("'" + std::string(text) + "' is not a quantity");
   std::string_view rest = number.substr(static_cast<std::size_t>(end - number.data()));
   while (rest.starts_with(' ')) rest.remove_prefix(1);
   if (rest.empty()) return value;

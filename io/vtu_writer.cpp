@@ -45,9 +45,8 @@ void check_fields(const std::vector<VtuField>& fields, Index rows) {
     require(!field->name.empty(), "a field has no name");
     require(field->values.cols() > 0, "field '" + field->name + "' has no columns");
     require_size("field '" + field->name + "'", field->values.rows(), rows);
-    require(
-        std::none_of(fields.begin(), field, [&](const VtuField& other) { return other.name == field->name; }),
-        "two fields have the name '" + field->name + "'");
+    require(std::none_of(fields.begin(), field, [&](const VtuField& other) { return other.name == field->name; }),
+            "two fields have the name '" + field->name + "'");
   }
 }
 
@@ -67,21 +66,20 @@ struct Appended {
   }
   template <typename Derived>
   void declare(std::string_view name, const Eigen::PlainObjectBase<Derived>& values) {
-    declare("Float64", name, values.cols(),
-            std::span(values.data(), static_cast<std::size_t>(values.size())));
+    declare("Float64", name, values.cols(), std::span(values.data(), static_cast<std::size_t>(values.size())));
   }
 };
 
 template <std::size_t k>
-void write_cells(const std::filesystem::path& path, const Points& nodes,
-                 std::span<const std::array<Index, k>> cells, const VtuFields& fields) {
+void write_cells(const std::filesystem::path& path, const Points& nodes, std::span<const std::array<Index, k>> cells,
+                 const VtuFields& fields) {
   const Index num_cells = static_cast<Index>(cells.size());
   check_fields(fields.point_data, nodes.rows());
   check_fields(fields.cell_data, num_cells);
   for (const auto& cell : cells)
     for (const Index node : cell)
-      require(0 <= node && node < nodes.rows(), "a cell reads node " + std::to_string(node) +
-                                                    ", expected 0 to " + std::to_string(nodes.rows() - 1));
+      require(0 <= node && node < nodes.rows(),
+              "a cell reads node " + std::to_string(node) + ", expected 0 to " + std::to_string(nodes.rows() - 1));
 
   std::vector<std::int64_t> offsets(cells.size());
   for (std::size_t e = 0; e < cells.size(); ++e) offsets[e] = static_cast<std::int64_t>((e + 1) * k);
@@ -115,8 +113,7 @@ void write_cells(const std::filesystem::path& path, const Points& nodes,
       "header_type=\"UInt64\">\n"
       "  <UnstructuredGrid>\n"
       "    <Piece NumberOfPoints=\"" +
-      std::to_string(nodes.rows()) + "\" NumberOfCells=\"" + std::to_string(num_cells) + "\">\n" +
-      arrays.xml +
+      std::to_string(nodes.rows()) + "\" NumberOfCells=\"" + std::to_string(num_cells) + "\">\n" + arrays.xml +
       "    </Piece>\n"
       "  </UnstructuredGrid>\n"
       "  <AppendedData encoding=\"raw\">\n_");
@@ -170,19 +167,17 @@ void VtuSeries::add(double time, const Points& nodes, std::span<const std::array
                     const VtuFields& fields) {
   add_frame(time, nodes, quadratic_tets, fields);
 }
-void VtuSeries::add(double time, const Points& nodes, std::span<const Triangle> triangles,
-                    const VtuFields& fields) {
+void VtuSeries::add(double time, const Points& nodes, std::span<const Triangle> triangles, const VtuFields& fields) {
   add_frame(time, nodes, triangles, fields);
 }
 
 template <typename Cell>
-void VtuSeries::add_frame(double time, const Points& nodes, std::span<const Cell> cells,
-                          const VtuFields& fields) {
+void VtuSeries::add_frame(double time, const Points& nodes, std::span<const Cell> cells, const VtuFields& fields) {
   require(std::isfinite(time) && (frames_.empty() || time > frames_.back().first),
           "time of a frame is " + std::to_string(time) + " s, expected a finite time after the last frame's");
   const std::string number = std::to_string(frames_.size());
-  const std::string name = pvd_.stem().string() + "_" +
-                           std::string(6 - std::min<std::size_t>(6, number.size()), '0') + number + ".vtu";
+  const std::string name =
+      pvd_.stem().string() + "_" + std::string(6 - std::min<std::size_t>(6, number.size()), '0') + number + ".vtu";
   write_vtu(pvd_.parent_path() / name, nodes, cells, fields);
   frames_.emplace_back(time, name);
   write_list();

@@ -54,8 +54,7 @@ class VtuSeries {
            const VtuFields& fields = {});
   void add(double time, const Points& nodes, std::span<const std::array<Index, 10>> quadratic_tets,
            const VtuFields& fields = {});
-  void add(double time, const Points& nodes, std::span<const Triangle> triangles,
-           const VtuFields& fields = {});
+  void add(double time, const Points& nodes, std::span<const Triangle> triangles, const VtuFields& fields = {});
 
   Index num_frames() const { return static_cast<Index>(frames_.size()); }
 

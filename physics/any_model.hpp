@@ -52,12 +52,15 @@ class AnyModel {
   };
 
   template <PotentialModel Model>
-  requires(Model::stencil_size == nodes && Model::node_dim == dim && is_translation_invariant<Model>())
-  explicit AnyModel(std::shared_ptr<const Model> model) : model_(std::make_shared<const Of<Model>>(std::move(model))) {}
+  requires(Model::stencil_size == nodes && Model::node_dim == dim &&
+           is_translation_invariant<Model>()) explicit AnyModel(std::shared_ptr<const Model> model)
+      : model_(std::make_shared<const Of<Model>>(std::move(model))) {}
 
   Index num_nodes() const { return model_->num_nodes(); }
   Index num_components() const { return model_->num_components(); }
-  std::span<const Index, nodes> stencil(Index i) const { return std::span<const Index, nodes>(model_->stencil(i), nodes); }
+  std::span<const Index, nodes> stencil(Index i) const {
+    return std::span<const Index, nodes>(model_->stencil(i), nodes);
+  }
   /// n × 3 [m]. \throws std::invalid_argument if the model does not know them.
   const Points& rest_positions() const {
     require(model_->rest_positions(), "the force model has no rest positions");
@@ -120,13 +123,17 @@ class AnyModel<nodes, dim>::Of final : public Interface {
   Index num_components() const override { return model_->num_components(); }
   const Index* stencil(Index i) const override { return std::span<const Index, nodes>(model_->stencil(i)).data(); }
   const Points* rest_positions() const override {
-    if constexpr (requires { { model_->rest_positions() } -> std::same_as<const Points&>; })
+    if constexpr (requires {
+                    { model_->rest_positions() } -> std::same_as<const Points&>;
+                  })
       return &model_->rest_positions();
     else
       return nullptr;
   }
   bool has_jacobian() const override {
-    return requires(const TermPack<Model>& terms, const Displacements& u) { terms.jacobian(u); };
+    return requires(const TermPack<Model>& terms, const Displacements& u) {
+      terms.jacobian(u);
+    };
   }
 
   double energy(Index i, const Local<local_dofs>& u) const override { return model_->energy(i, u); }

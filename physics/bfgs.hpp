@@ -68,8 +68,8 @@ BfgsReport bfgs_minimize(O& objective, SpdSolver<typename O::MatrixType>& solver
       value_trial = objective.value(trial);
       ++report.evaluations;
       const double slope_trial = g_trial.dot(step);
-      const bool decreases = value_trial <= value + 1e-4 * t * slope ||
-                             (value_trial <= value + rounding && slope_trial <= -0.8 * slope);
+      const bool decreases =
+          value_trial <= value + 1e-4 * t * slope || (value_trial <= value + rounding && slope_trial <= -0.8 * slope);
       if (!decreases || !std::isfinite(slope_trial))
         high = t;
       else if (slope_trial < 0.9 * slope)

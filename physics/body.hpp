@@ -57,7 +57,8 @@ inline Index num_cells(const Body& body) {
 /// What the terms of its force model are called: as its cells, or "Gauss points", or "flaps".
 inline std::string_view component_name(const Body& body) {
   if (std::holds_alternative<Shell>(body)) return "flaps";
-  const bool points = visit_solid(body, [](const auto& solid) { return solid.component == SolidComponent::GaussPoint; });
+  const bool points =
+      visit_solid(body, [](const auto& solid) { return solid.component == SolidComponent::GaussPoint; });
   return points && !std::holds_alternative<Solid>(body) ? "Gauss points" : cell_name(body);
 }
 

@@ -212,17 +212,14 @@ void check_cells(const Mesh& mesh, const MeshNumbers& numbers) {
     const auto one = faces.cycle(same[0]), other = faces.cycle(same[1]);
     const auto nodes_of = [](const auto& nodes) { return std::set<Index>(nodes.begin(), nodes.end()); };
     const bool is_pair = same.size() == 2 && one.corners == other.corners && one.turned != other.turned;
-    if (is_pair && (all_nodes_are_corners || nodes_of(faces.nodes(same[0])) == nodes_of(faces.nodes(same[1]))))
-      return;
+    if (is_pair && (all_nodes_are_corners || nodes_of(faces.nodes(same[0])) == nodes_of(faces.nodes(same[1])))) return;
     std::string corners;
     for (const Index v : faces.corners(same[0]))
       corners += (corners.empty() ? "" : ", ") + names.number(numbers.node, v);
     const Index first = faces.cell(same[0]), second = faces.cell(same[1]);
     const std::string pair = names.cell(first) + " and " + names.cell(second), face = "face (" + corners + ")";
-    if (is_pair)
-      throw std::invalid_argument(pair + " have different nodes amid the edges of their common " + face);
-    if (nodes_of(cells[first]) == nodes_of(cells[second]))
-      throw std::invalid_argument(pair + " have the same nodes");
+    if (is_pair) throw std::invalid_argument(pair + " have different nodes amid the edges of their common " + face);
+    if (nodes_of(cells[first]) == nodes_of(cells[second])) throw std::invalid_argument(pair + " have the same nodes");
     if (one.corners != other.corners || one.turned == other.turned)
       throw std::invalid_argument(pair + " overlap: they do not lie on either side of their common " + face +
                                   ", so the mesh is tangled");
@@ -301,8 +298,7 @@ QuadraticTetMesh quadratic_mesh(const TetMesh& mesh) {
   std::vector<std::array<Index, 2>> distinct;
   visit_equal(edges, mesh.num_nodes(), [&](std::span<const Index> ids) {
     for (const Index id : ids)
-      result.cells[id / edges_per_tet][4 + id % edges_per_tet] =
-          mesh.num_nodes() + static_cast<Index>(distinct.size());
+      result.cells[id / edges_per_tet][4 + id % edges_per_tet] = mesh.num_nodes() + static_cast<Index>(distinct.size());
     distinct.push_back(edges[ids[0]]);
   });
   for (std::size_t e = 0; e < mesh.tets.size(); ++e) std::ranges::copy(mesh.tets[e], result.cells[e].begin());

@@ -106,7 +106,9 @@ void check_mesh(const QuadraticTetMesh& mesh, const MeshNumbers& numbers = {});
 std::vector<Triangle> boundary_faces(const HexMesh& mesh);
 std::vector<Triangle> boundary_faces(const QuadraticTetMesh& mesh);
 template <typename Mesh>
-inline constexpr Index triangles_per_face = ElementOf<Mesh>::num_nodes == 8 ? 2 : ElementOf<Mesh>::num_nodes == 10 ? 4 : 1;
+inline constexpr Index triangles_per_face = ElementOf<Mesh>::num_nodes == 8    ? 2
+                                            : ElementOf<Mesh>::num_nodes == 10 ? 4
+                                                                               : 1;
 
 /// Where the boundary is not a surface.
 Hinges boundary_hinges(const HexMesh& mesh);

@@ -72,8 +72,8 @@ std::vector<int> node_starts(const SparseMatrix& A, Index block_size) {
   std::vector<int> nodes;
   for (int j = 0; j < n; ++j) {
     const bool joins = block_size > 0 ? j % block_size != 0
-                                      : j > 0 && std::equal(rows + start[j - 1], rows + start[j],
-                                                            rows + start[j], rows + start[j + 1]);
+                                      : j > 0 && std::equal(rows + start[j - 1], rows + start[j], rows + start[j],
+                                                            rows + start[j + 1]);
     if (!joins) nodes.push_back(j);
   }
   nodes.push_back(n);
@@ -81,12 +81,10 @@ std::vector<int> node_starts(const SparseMatrix& A, Index block_size) {
 }
 
 /// An order of the rows of A that keeps L sparse, found on the graph of nodes.
-std::vector<int> fill_reducing_order(const SparseMatrix& A, const std::vector<int>& nodes,
-                                     Workspace& workspace) {
+std::vector<int> fill_reducing_order(const SparseMatrix& A, const std::vector<int>& nodes, Workspace& workspace) {
   const int num_nodes = static_cast<int>(nodes.size()) - 1;
   std::vector<int> node_of(A.rows()), start{0}, neighbours, seen(num_nodes, -1);
-  for (int v = 0; v < num_nodes; ++v)
-    std::fill(node_of.begin() + nodes[v], node_of.begin() + nodes[v + 1], v);
+  for (int v = 0; v < num_nodes; ++v) std::fill(node_of.begin() + nodes[v], node_of.begin() + nodes[v + 1], v);
   for (int v = 0; v < num_nodes; ++v) {
     const auto first = static_cast<std::ptrdiff_t>(neighbours.size());
     for (int k = A.outerIndexPtr()[nodes[v]]; k < A.outerIndexPtr()[nodes[v + 1]]; ++k) {
@@ -107,8 +105,7 @@ std::vector<int> fill_reducing_order(const SparseMatrix& A, const std::vector<in
   std::vector<int> order;
   order.reserve(A.rows());
   for (int k = 0; k < num_nodes; ++k)
-    for (int v = static_cast<const int*>(L->Perm)[k], row = nodes[v]; row < nodes[v + 1]; ++row)
-      order.push_back(row);
+    for (int v = static_cast<const int*>(L->Perm)[k], row = nodes[v]; row < nodes[v + 1]; ++row) order.push_back(row);
   cholmod_free_factor(&L, common);
   return order;
 }
@@ -127,10 +124,8 @@ SupernodalPattern supernodal_pattern(const SparseMatrix& A, Index block_size) {
     return std::vector<int>(begin, begin + count);
   };
   const std::vector<int> row_start = copy(L->pi, L->nsuper + 1);
-  SupernodalPattern pattern{copy(L->Perm, L->n),
-                            copy(L->super, L->nsuper + 1),
-                            {row_start.begin(), row_start.end()},
-                            copy(L->s, L->ssize)};
+  SupernodalPattern pattern{
+      copy(L->Perm, L->n), copy(L->super, L->nsuper + 1), {row_start.begin(), row_start.end()}, copy(L->s, L->ssize)};
   cholmod_free_factor(&L, common);
   return pattern;
 }
@@ -163,8 +158,7 @@ void CholmodSolver::analyze(const SparseMatrix& A, Index block_size) {
   require(A.rows() > 0, "analyze: A is empty");
   require(A.isCompressed(), "analyze: A is not compressed");
   require(block_size == 0 || (block_size > 0 && A.rows() % block_size == 0),
-          "block_size is " + std::to_string(block_size) + ", expected 0 or a divisor of " +
-              std::to_string(A.rows()));
+          "block_size is " + std::to_string(block_size) + ", expected 0 or a divisor of " + std::to_string(A.rows()));
   factor_ = std::make_unique<Factor>(Factor{{supernodal_pattern(A, block_size), A}, fingerprint(A)});
 }
 

@@ -25,8 +25,7 @@ class CompositeModel {
   static constexpr int local_dofs = stencil_size * node_dim;
   static constexpr bool translation_invariant =
       is_translation_invariant<First>() && (is_translation_invariant<Others>() && ...);
-  static constexpr bool symmetric_tangent =
-      has_symmetric_tangent<First>() && (has_symmetric_tangent<Others>() && ...);
+  static constexpr bool symmetric_tangent = has_symmetric_tangent<First>() && (has_symmetric_tangent<Others>() && ...);
   static_assert(((Others::node_dim == node_dim) && ...), "parts need as many unknowns a node as one another");
   static constexpr std::size_t num_parts = 1 + sizeof...(Others);
   template <std::size_t part>
@@ -94,7 +93,8 @@ class CompositeModel {
   void for_parts(const Body& body) const {
     [&]<std::size_t... part>(std::index_sequence<part...>) {
       (body(std::integral_constant<std::size_t, part>(), *std::get<part>(parts_)), ...);
-    }(std::make_index_sequence<num_parts>());
+    }
+    (std::make_index_sequence<num_parts>());
   }
   template <typename Body>
   void for_part_of(Index i, const Body& body) const {
@@ -110,7 +110,8 @@ class CompositeModel {
 
   void fill_stencils() {
     stencils_.resize(num_components());
-    std::vector<std::vector<Index>> around(num_nodes());  // full stencils at each node: filling from them couples nothing new
+    std::vector<std::vector<Index>> around(
+        num_nodes());  // full stencils at each node: filling from them couples nothing new
     for_parts([&]<typename Model>(std::size_t part, const Model& model) {
       if constexpr (Model::stencil_size == stencil_size)
         for (Index i = 0; i < model.num_components(); ++i) {
@@ -127,7 +128,8 @@ class CompositeModel {
             if (end != stencil.end() && std::find(stencil.begin(), end, v) == end) *end++ = v;
           };
           const auto holds_all = [&](Index full) {
-            return std::all_of(stencil.begin(), end, [&](Index v) { return std::ranges::count(stencils_[full], v) > 0; });
+            return std::all_of(stencil.begin(), end,
+                               [&](Index v) { return std::ranges::count(stencils_[full], v) > 0; });
           };
           const std::vector<Index>& near = around[stencil[0]];
           const auto best = std::ranges::find_if(near, holds_all);
@@ -151,7 +153,8 @@ class TermPack<CompositeModel<Models...>> {
  public:
   using Displacements = Local<Composite::local_dofs, Pack>;
 
-  TermPack(const std::shared_ptr<const Composite>& model, const PackIndices& components) : model_(model), lanes_(components) {
+  TermPack(const std::shared_ptr<const Composite>& model, const PackIndices& components)
+      : model_(model), lanes_(components) {
     const std::size_t part = model->part_of(components[0]);
     if (std::ranges::all_of(components, [&](Index i) { return model->part_of(i) == part; })) {
       PackIndices own = components;
@@ -163,8 +166,9 @@ class TermPack<CompositeModel<Models...>> {
       : TermPack(model, one_component(component)) {}
 
   Pack energy(const Displacements& u) const requires PotentialModel<Composite> {
-    return evaluate(Pack(0.0), u, [](const auto& terms, const auto& own, Pack& e) { e = terms.energy(own); },
-                    [&](int k, const auto& own, Pack& e) { e.set(k, model_->energy(lanes_[k], own)); });
+    return evaluate(
+        Pack(0.0), u, [](const auto& terms, const auto& own, Pack& e) { e = terms.energy(own); },
+        [&](int k, const auto& own, Pack& e) { e.set(k, model_->energy(lanes_[k], own)); });
   }
   Displacements force(const Displacements& u) const {
     return evaluate(
@@ -195,7 +199,8 @@ class TermPack<CompositeModel<Models...>> {
   void choose(std::size_t part, const PackIndices& own) {
     [&]<std::size_t... p>(std::index_sequence<p...>) {
       ((p == part ? (void)terms_.template emplace<p + 1>(model_->template part<p>(), own) : void()), ...);
-    }(std::make_index_sequence<Composite::num_parts>());
+    }
+    (std::make_index_sequence<Composite::num_parts>());
   }
 
   /// by_part(terms, its displacements, result), or for mixed lanes by_lane(k, displacements, result) for each.

@@ -12,17 +12,15 @@ DiscreteShell::DiscreteShell(const TriangleMesh& mesh, const std::vector<ShellMa
           std::to_string(materials.size()) + " materials for " + std::to_string(mesh.num_triangles()) +
               " triangles, expected one for all or one each");
   for (const ShellMaterial& material : materials) material.check();
-  const auto material = [&](Index t) -> const ShellMaterial& {
-    return materials[materials.size() == 1 ? 0 : t];
-  };
+  const auto material = [&](Index t) -> const ShellMaterial& { return materials[materials.size() == 1 ? 0 : t]; };
 
   const std::vector<Flap> flaps = interior_edges(mesh);
   std::vector<int> num_flaps(mesh.triangles.size(), 0);
   for (const Flap& flap : flaps)
     for (const Index t : flap.triangles) ++num_flaps[t];
   for (Index t = 0; t < mesh.num_triangles(); ++t)
-    require(num_flaps[t] > 0, "triangle " + std::to_string(t) +
-                                  " shares no edge with another one: a shell cannot bend or stretch there");
+    require(num_flaps[t] > 0,
+            "triangle " + std::to_string(t) + " shares no edge with another one: a shell cannot bend or stretch there");
   const std::vector<Index> neighbour = neighbour_sides(mesh);
   const auto is_boundary = [&](Index t, Index from) {
     const auto corner = std::find(mesh.triangles[t].begin(), mesh.triangles[t].end(), from);
@@ -53,8 +51,7 @@ DiscreteShell::DiscreteShell(const TriangleMesh& mesh, const std::vector<ShellMa
 
     term.rest_length = {e.norm(), to_c.norm(), (to_c - e).norm(), to_d.norm(), (to_d - e).norm()};
     const double share_c = 1.0 / num_flaps[abc], share_d = 1.0 / num_flaps[bad];
-    const double stretch_c = material(abc).stretch * area_c / 3,
-                 stretch_d = material(bad).stretch * area_d / 3;
+    const double stretch_c = material(abc).stretch * area_c / 3, stretch_d = material(bad).stretch * area_d / 3;
     // the sides of abc run bc, ca, those of bad ad, db
     const std::array<double, 5> weight{stretch_c + stretch_d,                            //
                                        is_boundary(abc, c) ? share_c * stretch_c : 0.0,  //
@@ -63,8 +60,7 @@ DiscreteShell::DiscreteShell(const TriangleMesh& mesh, const std::vector<ShellMa
                                        is_boundary(bad, d) ? share_d * stretch_d : 0.0};
     for (int k = 0; k < 5; ++k) term.spring[k] = weight[k] / (term.rest_length[k] * term.rest_length[k]);
     term.rest_normal = {2 * area_c, 2 * area_d};
-    term.area_spring = {material(abc).area * share_c / (4 * area_c),
-                        material(bad).area * share_d / (4 * area_d)};
+    term.area_spring = {material(abc).area * share_c / (4 * area_c), material(bad).area * share_d / (4 * area_d)};
 
     stencils_.push_back(flap.nodes);
     terms_.push_back(term);

@@ -193,9 +193,8 @@ Local<12, Real> DiscreteShell::Term<Real>::force(const Local<12, Real>& u) const
   const Real sum = shape.length + rest_length[0], square = shape.length * shape.length;
   const Real inverse = Real(1) / at_least(smallest * smallest, square * sum);
   const Real inverse_square = inverse * sum;
-  const Vec f_b =
-      shape.e * (spring[0] * inner_edge(shape).growth() * shape.length * inverse) -
-      (f_c * (dot(shape.c, shape.e) * inverse_square) + f_d * (dot(shape.d, shape.e) * inverse_square));
+  const Vec f_b = shape.e * (spring[0] * inner_edge(shape).growth() * shape.length * inverse) -
+                  (f_c * (dot(shape.c, shape.e) * inverse_square) + f_d * (dot(shape.d, shape.e) * inverse_square));
   Local<12, Real> f = on_corners(f_b, f_c, f_d);
   if (has_boundary()) f += boundary_force(shape);
   if (resists_area()) f += area_force(shape);
@@ -207,8 +206,7 @@ Local<12, Real> DiscreteShell::Term<Real>::boundary_force(const Shape& shape) co
   const auto pull = [&](int k) -> Vec {
     const Edge edge = outer_edge(shape, k);
     const Real length = detail::norm(edge.now);
-    return edge.now *
-           (spring[k] * edge.growth() / detail::at_least(smallest, length * (length + rest_length[k])));
+    return edge.now * (spring[k] * edge.growth() / detail::at_least(smallest, length * (length + rest_length[k])));
   };
   const Vec ac = pull(1), bc = pull(2), ad = pull(3), bd = pull(4);
   return on_corners(-bc - bd, ac + bc, ad + bd);
@@ -218,8 +216,8 @@ template <typename Real>
 Local<12, Real> DiscreteShell::Term<Real>::area_force(const Shape& shape) const {
   const auto tension = [&](int k, const Vec& n, const Vec& p, const Vec& change_p) -> Vec {
     const Real size = detail::norm(n);
-    return n * (area_spring[k] * shape.growth(n, p, change_p) /
-                detail::at_least(smallest, size * (size + rest_normal[k])));
+    return n *
+           (area_spring[k] * shape.growth(n, p, change_p) / detail::at_least(smallest, size * (size + rest_normal[k])));
   };
   const Vec at_c = tension(0, shape.n_c, shape.c, shape.change_c);
   const Vec at_d = tension(1, shape.n_d, shape.d, shape.change_d);
@@ -318,8 +316,8 @@ LocalMatrix<12, Real> DiscreteShell::Term<Real>::stiffness(const Local<12, Real>
     for (int w = 0; w < 2; ++w) {
       const Wing& wing = wings[w];
       const int p = 6 + 3 * w;
-      const Real growth = w == 0 ? shape.growth(shape.n_c, shape.c, shape.change_c)
-                                 : shape.growth(shape.n_d, shape.d, shape.change_d);
+      const Real growth =
+          w == 0 ? shape.growth(shape.n_c, shape.c, shape.change_c) : shape.growth(shape.n_d, shape.d, shape.change_d);
       const Real k = area_spring[w], tension = k * growth / (shape.length * wing.h + rest_normal[w]);
       const Vec q_p = wing.b * shape.length, q_b = wing.e * wing.h - q_p * wing.t;
       const Real n_pp = tension * shape.length * wing.inverse_height, n_bp = n_pp * wing.t;

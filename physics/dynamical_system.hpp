@@ -18,9 +18,9 @@ namespace supple {
 template <typename S>
 concept SemidiscreteSystem = requires(const S& system, VectorIn u, VectorOut f, typename S::MatrixType& K) {
   { system.dim() } -> std::convertible_to<Index>;
-  { system.mass() } -> std::convertible_to<const Vector&>;  // diagonal of M (lumped) [kg]
-  system.force(u, f);                                       // f [N]
-  system.stiffness(u, K);                                   // K [N/m]
+  { system.mass() } -> std::convertible_to<const Vector&>;                            // diagonal of M (lumped) [kg]
+  system.force(u, f);                                                                 // f [N]
+  system.stiffness(u, K);                                                             // K [N/m]
   { system.rest_stiffness() } -> std::convertible_to<const typename S::MatrixType&>;  // K(0), symmetric
 };
 
@@ -30,10 +30,8 @@ concept SemidiscreteSystem = requires(const S& system, VectorIn u, VectorOut f, 
 template <typename S>
 concept DynamicalSystem = SemidiscreteSystem<S> && has_symmetric_tangent<S>() &&
     requires(const S& system, VectorIn u, const Loads& loads) {
-  { system.energy(u) } -> std::convertible_to<double>;  // E [J]
-  {
-    system.project(loads)
-    } -> std::same_as<AffineLoad<typename S::MatrixType>>;  // loads on nodes → on unknowns
+  { system.energy(u) } -> std::convertible_to<double>;                            // E [J]
+  { system.project(loads) } -> std::same_as<AffineLoad<typename S::MatrixType>>;  // loads on nodes → on unknowns
 };
 
 }  // namespace supple

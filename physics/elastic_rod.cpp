@@ -47,8 +47,7 @@ void ElasticRod::add_polyline(const std::vector<Index>& polyline, const RodMater
   require(n >= (closed ? 4 : 3), name + " has no inner node: it cannot bend; a spring is what it could be");
   for (Index k = 1; k < n - 1; ++k) {
     const bool first = !closed && k == 1, last = !closed && k == n - 2;
-    add_bend({polyline[k - 1], polyline[k], polyline[k + 1]}, material, {first ? 1.0 : 0.5, last ? 1.0 : 0.5},
-             name);
+    add_bend({polyline[k - 1], polyline[k], polyline[k + 1]}, material, {first ? 1.0 : 0.5, last ? 1.0 : 0.5}, name);
   }
   if (closed) add_bend({polyline[n - 2], polyline[0], polyline[1]}, material, {0.5, 0.5}, name);
 }
@@ -65,8 +64,7 @@ void ElasticRod::add_bend(const std::array<Index, 3>& nodes, const RodMaterial& 
   const double cosine = detail::dot(e, f) / (l_e * l_f), sine = rest_cross.norm() / (l_e * l_f);
   require(cosine > 0 || sine > straight, at + " folds back onto itself");
   double rest_bend = 2 * sine / (1 + cosine);
-  if (rest_bend <
-      straight) {  // then exactly so: otherwise rounding would choose the plane in which the rod resists
+  if (rest_bend < straight) {  // then exactly so: otherwise rounding would choose the plane in which the rod resists
     const Point along = (e + f).normalized();
     e = l_e * along;
     f = l_f * along;

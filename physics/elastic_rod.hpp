@@ -59,8 +59,7 @@ class ElasticRod {
 
     Real energy(const Local<9, Real>& u) const {
       const Shape s(*this, u);
-      const Real change = s.bend - rest_bend, e = s.e.stretch(rest_length[0]),
-                 f = s.f.stretch(rest_length[1]);
+      const Real change = s.bend - rest_bend, e = s.e.stretch(rest_length[0]), f = s.f.stretch(rest_length[1]);
       return Real(0.5) * (bending * change * change + spring[0] * e * e + spring[1] * f * f);
     }
 
@@ -92,7 +91,7 @@ class ElasticRod {
     /// displacements.
     struct Shape {
       detail::Segment<Real> e, f;
-      Real cos, bend;  // cos φ = t · r of the unit edges t and r; κ
+      Real cos, bend;          // cos φ = t · r of the unit edges t and r; κ
       Vec cos_by_e, cos_by_f;  // ∂ cos φ / ∂e = (r − cos φ t) / |e| = (t × r) × t / |e|, ∂ cos φ / ∂f = r ×
                                // (t × r) / |f|
 
@@ -126,8 +125,7 @@ class ElasticRod {
   /// than three nodes, a node that does not exist, an edge without length, and edges that fold back at rest.
   ElasticRod(const Points& nodes, const std::vector<std::vector<Index>>& polylines,
              const std::vector<RodMaterial>& materials);
-  ElasticRod(const Points& nodes, const std::vector<std::vector<Index>>& polylines,
-             const RodMaterial& material)
+  ElasticRod(const Points& nodes, const std::vector<std::vector<Index>>& polylines, const RodMaterial& material)
       : ElasticRod(nodes, polylines, std::vector<RodMaterial>{material}) {}
 
   Index num_nodes() const { return rest_positions_.rows(); }
@@ -142,8 +140,8 @@ class ElasticRod {
 
  private:
   void add_polyline(const std::vector<Index>& polyline, const RodMaterial& material, const std::string& name);
-  void add_bend(const std::array<Index, 3>& nodes, const RodMaterial& material,
-                const std::array<double, 2>& shares, const std::string& name);
+  void add_bend(const std::array<Index, 3>& nodes, const RodMaterial& material, const std::array<double, 2>& shares,
+                const std::string& name);
 
   Points rest_positions_;
   std::vector<std::array<Index, 3>> stencils_;
@@ -161,8 +159,8 @@ LocalMatrix<9, Real> ElasticRod::Term<Real>::stiffness(const Local<9, Real>& u) 
   // ½ k [(κ²)'' (1 − κ̄/κ) + (κ²)'² κ̄ / (2 κ³)], (κ²)' = −8 / width², (κ²)'' = 16 / width³
   const Real inverse = Real(1) / width;
   const Real square = where_positive(s.bend, Real(1) / (s.bend * s.bend), Real(0));
-  const Real second = Real(8) * bending * inverse * inverse * inverse *
-                      (Real(1) - share + Real(2) * share * square * inverse);
+  const Real second =
+      Real(8) * bending * inverse * inverse * inverse * (Real(1) - share + Real(2) * share * square * inverse);
   Matrix3<Real> ee, ef, ff;
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) {

@@ -23,7 +23,7 @@ struct QuadraturePoint {
 
 /// How the mass of a cell goes to its nodes; either keeps the sum.
 enum class MassLumping {
-  RowSum,  ///< m_a ∝ ∫ N_a: keeps the centre of mass, too; for elements where all of these are positive
+  RowSum,           ///< m_a ∝ ∫ N_a: keeps the centre of mass, too; for elements where all of these are positive
   DiagonalScaling,  ///< m_a ∝ ∫ N_a², always positive. \see Hinton, Rock, Zienkiewicz 1976
 };
 
@@ -37,17 +37,11 @@ template <typename Element>
 concept SolidElement = requires(const Point& xi) {
   { Element::name } -> std::convertible_to<std::string_view>;  // in messages
   { Element::num_nodes } -> std::convertible_to<int>;
-  {
-    Element::nodes
-    } -> std::convertible_to<std::array<std::array<double, 3>, Element::num_nodes>>;  // ξ of the nodes
-  { Element::shape(xi) } -> std::convertible_to<Local<Element::num_nodes>>;           // N_a
-  { Element::shape_gradients(xi) } -> std::convertible_to<ShapeGradients<Element>>;   // ∂N_a/∂ξ
-  {
-    std::span(Element::gauss_points)
-    } -> std::convertible_to<std::span<const QuadraturePoint>>;  // of the energy
-  {
-    std::span(Element::mass_points)
-    } -> std::convertible_to<std::span<const QuadraturePoint>>;  // of the mass
+  { Element::nodes } -> std::convertible_to<std::array<std::array<double, 3>, Element::num_nodes>>;  // ξ of the nodes
+  { Element::shape(xi) } -> std::convertible_to<Local<Element::num_nodes>>;                          // N_a
+  { Element::shape_gradients(xi) } -> std::convertible_to<ShapeGradients<Element>>;                  // ∂N_a/∂ξ
+  { std::span(Element::gauss_points) } -> std::convertible_to<std::span<const QuadraturePoint>>;     // of the energy
+  { std::span(Element::mass_points) } -> std::convertible_to<std::span<const QuadraturePoint>>;      // of the mass
   { Element::lumping } -> std::convertible_to<MassLumping>;
 };
 
@@ -145,8 +139,7 @@ struct CellPoint {
 /// \throws std::invalid_argument that names the cell unless its nodes exist and differ.
 template <SolidElement Element>
 ShapeGradients<Element> cell_positions(const Points& nodes,
-                                       std::span<const std::array<Index, Element::num_nodes>> cells,
-                                       Index e) {
+                                       std::span<const std::array<Index, Element::num_nodes>> cells, Index e) {
   const auto& cell = cells[e];
   const auto name = [&] { return std::string(Element::name) + " " + std::to_string(e); };
   ShapeGradients<Element> X;
@@ -173,8 +166,8 @@ std::vector<CellPoint<Element>> cell_points(const ShapeGradients<Element>& X, In
     points.emplace_back(X, Point(rule[g].xi[0], rule[g].xi[1], rule[g].xi[2]));
     if (!(points.back().det_J > 0))
       throw std::invalid_argument(std::string(Element::name) + " " + std::to_string(e) +
-                                  " has det J = " + std::to_string(points.back().det_J) +
-                                  " m^3 at Gauss point " + std::to_string(g) + ", expected > 0");
+                                  " has det J = " + std::to_string(points.back().det_J) + " m^3 at Gauss point " +
+                                  std::to_string(g) + ", expected > 0");
   }
   return points;
 }

@@ -33,22 +33,29 @@ template <template <typename> class Material>
 consteval bool explain_material() {
   using Scalar = Material<double>;
   using Packed = Material<Pack>;
-  static_assert(requires(Scalar& material, const Matrix3<double>& F) { material.energy(F); },
-                "Material: `Real energy(const Matrix3<Real>& F) const` is missing");
-  static_assert(requires(const Scalar& material, const Matrix3<double>& F) {
-                  { material.energy(F) } -> std::convertible_to<double>;
-                },
-                "Material: `Real energy(const Matrix3<Real>& F) const` must be const and return Real");
-  static_assert(!requires { &Packed::energy; } || detail::HasEnergyOver<Packed, Pack>,
-                "Material: `energy` must be written over the scalar type Real: it does not take packs");
-  static_assert(!requires { &Scalar::stress; } || detail::HasStressOver<Scalar, double>,
-                "Material: there is a `stress`, but not `Matrix3<Real> stress(const Matrix3<Real>& F) const`");
-  static_assert(!requires { &Packed::stress; } || detail::HasStressOver<Packed, Pack>,
-                "Material: `stress` must be written over the scalar type Real: it does not take packs");
-  static_assert(!requires { &Scalar::tangent; } || detail::HasTangentOver<Scalar, double>,
-                "Material: there is a `tangent`, but not `Matrix9<Real> tangent(const Matrix3<Real>& F) const`");
-  static_assert(!requires { &Packed::tangent; } || detail::HasTangentOver<Packed, Pack>,
-                "Material: `tangent` must be written over the scalar type Real: it does not take packs");
+  static_assert(
+      requires(Scalar & material, const Matrix3<double>& F) { material.energy(F); },
+      "Material: `Real energy(const Matrix3<Real>& F) const` is missing");
+  static_assert(
+      requires(const Scalar& material, const Matrix3<double>& F) {
+        { material.energy(F) } -> std::convertible_to<double>;
+      },
+      "Material: `Real energy(const Matrix3<Real>& F) const` must be const and return Real");
+  static_assert(
+      !requires { &Packed::energy; } || detail::HasEnergyOver<Packed, Pack>,
+      "Material: `energy` must be written over the scalar type Real: it does not take packs");
+  static_assert(
+      !requires { &Scalar::stress; } || detail::HasStressOver<Scalar, double>,
+      "Material: there is a `stress`, but not `Matrix3<Real> stress(const Matrix3<Real>& F) const`");
+  static_assert(
+      !requires { &Packed::stress; } || detail::HasStressOver<Packed, Pack>,
+      "Material: `stress` must be written over the scalar type Real: it does not take packs");
+  static_assert(
+      !requires { &Scalar::tangent; } || detail::HasTangentOver<Scalar, double>,
+      "Material: there is a `tangent`, but not `Matrix9<Real> tangent(const Matrix3<Real>& F) const`");
+  static_assert(
+      !requires { &Packed::tangent; } || detail::HasTangentOver<Packed, Pack>,
+      "Material: `tangent` must be written over the scalar type Real: it does not take packs");
   static_assert(std::is_trivially_copyable_v<Scalar> && sizeof(Scalar) % sizeof(double) == 0 &&
                     sizeof(Packed) == sizeof(Scalar) / sizeof(double) * sizeof(Pack),
                 "Material: its members must be of type Real (or arrays of them) and nothing else");

@@ -31,8 +31,7 @@ class FullSystem {
   FullSystem(Model model, Vector nodal_mass, const std::vector<Index>& fixed_nodes = {})
       : FullSystem(std::make_shared<const Model>(std::move(model)), std::move(nodal_mass), fixed_nodes) {}
 
-  FullSystem(std::shared_ptr<const Model> model, Vector nodal_mass,
-             const std::vector<Index>& fixed_nodes = {})
+  FullSystem(std::shared_ptr<const Model> model, Vector nodal_mass, const std::vector<Index>& fixed_nodes = {})
       : model_(std::move(model)),
         nodal_mass_(std::move(nodal_mass)),
         numbering_(model_->num_nodes(), fixed_nodes),
@@ -50,8 +49,7 @@ class FullSystem {
       const std::span<const Index, Model::stencil_size> nodes = model_->stencil(i);
       stencils.insert(stencils.end(), nodes.begin(), nodes.end());
     }
-    for (Index first = 0; first < m; first += Pack::size)
-      packs_.emplace_back(model_, consecutive_components(first, m));
+    for (Index first = 0; first < m; first += Pack::size) packs_.emplace_back(model_, consecutive_components(first, m));
     stencils_ = std::move(stencils);
     incidence_ = NodeIncidence(stencils_, Model::stencil_size, model_->num_nodes());
     pattern_.build(stencils_, Model::stencil_size, incidence_);
@@ -118,9 +116,8 @@ class FullSystem {
         Local<node_dim> sum = Local<node_dim>::Zero();
         for (const Index slot : incidence_.of(v)) {  // slot = component · stencil_size + corner
           const Index i = slot / Model::stencil_size, corner = slot % Model::stencil_size;
-          const double* at = values +
-                             ((i / Pack::size) * Model::local_dofs + corner * node_dim) * Pack::size +
-                             i % Pack::size;
+          const double* at =
+              values + ((i / Pack::size) * Model::local_dofs + corner * node_dim) * Pack::size + i % Pack::size;
           for (int c = 0; c < node_dim; ++c) sum[c] += at[c * Pack::size];
         }
         f.template segment<node_dim>(v * node_dim) = sum;
@@ -170,8 +167,7 @@ class FullSystem {
       for (Index f = 0; f < numbering_.num_free(); ++f)
         result.force.segment<3>(3 * f) += nodal_mass_[numbering_.free_nodes()[f]] * loads.gravity;
     for (const NodalForce& load : loads.forces)
-      if (const Index f = numbering_.free_index(load.node); f >= 0)
-        result.force.segment<3>(3 * f) += load.force;
+      if (const Index f = numbering_.free_index(load.node); f >= 0) result.force.segment<3>(3 * f) += load.force;
     std::vector<Eigen::Triplet<double>> diagonal;
     for (const PointSpring& spring : loads.springs)
       if (const Index f = numbering_.free_index(spring.node); f >= 0) {
@@ -193,9 +189,7 @@ class FullSystem {
  private:
   static constexpr Index packs_per_chunk = 64;
 
-  Index num_chunks() const {
-    return (static_cast<Index>(packs_.size()) + packs_per_chunk - 1) / packs_per_chunk;
-  }
+  Index num_chunks() const { return (static_cast<Index>(packs_.size()) + packs_per_chunk - 1) / packs_per_chunk; }
 
   /// body(pack, number of lanes that are real components)
   template <typename Body>

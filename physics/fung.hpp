@@ -17,10 +17,10 @@ namespace supple {
 /// \see Guccione, McCulloch, Waldman 1991, Eqs. 1 and 2; the volumetric term is a penalty.
 template <typename Real = double>
 struct Fung {
-  Real c;                             ///< [Pa]
-  Real b_fibre, b_across, b_shear;    ///< b_f, b_t, b_fs
-  Real bulk;                          ///< κ [Pa]
-  Real fibre_x, fibre_y, fibre_z;     ///< a, a unit vector at rest
+  Real c;                           ///< [Pa]
+  Real b_fibre, b_across, b_shear;  ///< b_f, b_t, b_fs
+  Real bulk;                        ///< κ [Pa]
+  Real fibre_x, fibre_y, fibre_z;   ///< a, a unit vector at rest
   static constexpr std::array parameter_names{"c",    "b_fibre", "b_across", "b_shear",
                                               "bulk", "fibre_x", "fibre_y",  "fibre_z"};
 

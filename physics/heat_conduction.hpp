@@ -143,10 +143,8 @@ class HeatConduction {
   std::span<const Index, 4> stencil(Index i) const { return tets_[i]; }
   const Term<double>& term(Index i) const { return terms_[i]; }
 
-  Local<4> force(Index i, const Local<4>& theta_i) const { return terms_[i].force(theta_i); }  ///< [W]
-  LocalMatrix<4> stiffness(Index i, const Local<4>& theta_i) const {
-    return terms_[i].stiffness(theta_i);
-  }  ///< [W/K]
+  Local<4> force(Index i, const Local<4>& theta_i) const { return terms_[i].force(theta_i); }                ///< [W]
+  LocalMatrix<4> stiffness(Index i, const Local<4>& theta_i) const { return terms_[i].stiffness(theta_i); }  ///< [W/K]
 
  private:
   Points rest_positions_;

@@ -19,11 +19,10 @@ void check_loads(const Loads& loads, Index num_nodes) {
   for (std::size_t k = 0; k < loads.springs.size(); ++k) {
     const PointSpring& spring = loads.springs[k];
     check_node("spring", k, spring.node);
-    require(std::isfinite(spring.stiffness) && spring.stiffness > 0,
-            "spring " + std::to_string(k) + " has stiffness " + std::to_string(spring.stiffness) +
-                " N/m, expected > 0");
-    require(spring.displacement.allFinite(),
-            "spring " + std::to_string(k) + " has a target that is not finite");
+    require(
+        std::isfinite(spring.stiffness) && spring.stiffness > 0,
+        "spring " + std::to_string(k) + " has stiffness " + std::to_string(spring.stiffness) + " N/m, expected > 0");
+    require(spring.displacement.allFinite(), "spring " + std::to_string(k) + " has a target that is not finite");
   }
 }
 

@@ -7,8 +7,7 @@ Vector lumped_mass(const TetMesh& mesh, VectorIn density) {
   Vector mass = Vector::Zero(mesh.num_nodes());
   for (Index e = 0; e < mesh.num_tets(); ++e) {
     const double rho = density.size() == 1 ? density[0] : density[e];
-    require(rho > 0,
-            "density of tet " + std::to_string(e) + " is " + std::to_string(rho) + " kg/m^3, expected > 0");
+    require(rho > 0, "density of tet " + std::to_string(e) + " is " + std::to_string(rho) + " kg/m^3, expected > 0");
     for (const Index v : mesh.tets[e]) mass[v] += rho * tet_volume(mesh, e) / 4;
   }
   return mass;
@@ -19,8 +18,7 @@ Vector lumped_mass(const TetMesh& mesh, double density) {
 }
 
 Vector lumped_heat_capacity(const TetMesh& mesh, double density, double specific_heat) {
-  require(specific_heat > 0,
-          "specific heat is " + std::to_string(specific_heat) + " J/(kg K), expected > 0");
+  require(specific_heat > 0, "specific heat is " + std::to_string(specific_heat) + " J/(kg K), expected > 0");
   return specific_heat * lumped_mass(mesh, density);
 }
 
@@ -31,10 +29,9 @@ Vector lumped_mass(const TriangleMesh& mesh, VectorIn density, VectorIn thicknes
   for (Index t = 0; t < mesh.num_triangles(); ++t) {
     const double rho = density.size() == 1 ? density[0] : density[t];
     const double h = thickness.size() == 1 ? thickness[0] : thickness[t];
-    require(rho > 0, "density of triangle " + std::to_string(t) + " is " + std::to_string(rho) +
-                         " kg/m^3, expected > 0");
-    require(h > 0,
-            "thickness of triangle " + std::to_string(t) + " is " + std::to_string(h) + " m, expected > 0");
+    require(rho > 0,
+            "density of triangle " + std::to_string(t) + " is " + std::to_string(rho) + " kg/m^3, expected > 0");
+    require(h > 0, "thickness of triangle " + std::to_string(t) + " is " + std::to_string(h) + " m, expected > 0");
     for (const Index v : mesh.triangles[t]) mass[v] += rho * h * triangle_area(mesh, t) / 3;
   }
   return mass;

@@ -30,8 +30,8 @@ Vector lumped_mass(const CellMesh<Element::num_nodes>& mesh, VectorIn density) {
   for (Index e = 0; e < mesh.num_cells(); ++e) {
     const double rho = density[density.size() == 1 ? 0 : e];
     if (!(rho > 0))
-      throw std::invalid_argument("density of " + std::string(Element::name) + " " + std::to_string(e) +
-                                  " is " + std::to_string(rho) + " kg/m^3, expected > 0");
+      throw std::invalid_argument("density of " + std::string(Element::name) + " " + std::to_string(e) + " is " +
+                                  std::to_string(rho) + " kg/m^3, expected > 0");
     const auto points =
         cell_points<Element>(cell_positions<Element>(mesh.nodes, mesh.cells, e), e, Element::mass_points);
     Local<Element::num_nodes> share = Local<Element::num_nodes>::Zero();
@@ -41,8 +41,7 @@ Vector lumped_mass(const CellMesh<Element::num_nodes>& mesh, VectorIn density) {
       const Local<Element::num_nodes> N = Element::shape(Point(at.xi[0], at.xi[1], at.xi[2]));
       const double volume_g = at.weight * points[g].det_J;
       volume += volume_g;
-      share +=
-          volume_g * (Element::lumping == MassLumping::RowSum ? N : Local<Element::num_nodes>(N.cwiseAbs2()));
+      share += volume_g * (Element::lumping == MassLumping::RowSum ? N : Local<Element::num_nodes>(N.cwiseAbs2()));
     }
     share *= rho * volume / share.sum();
     for (int a = 0; a < Element::num_nodes; ++a) mass[mesh.cells[e][a]] += share[a];

@@ -15,9 +15,12 @@ namespace {
 struct Laws {
   std::mutex mutex;
   std::deque<MaterialLaw> laws{
-      make_material_law<StVenantKirchhoff>("stvk"),       make_material_law<MooneyRivlin>("mooney-rivlin"),
-      make_material_law<NeoHookean>("neo-hookean"),       make_material_law<StableNeoHookean>("stable-neo-hookean"),
-      make_material_law<Corotational>("corotational"),    make_material_law<Ogden>("ogden"),
+      make_material_law<StVenantKirchhoff>("stvk"),
+      make_material_law<MooneyRivlin>("mooney-rivlin"),
+      make_material_law<NeoHookean>("neo-hookean"),
+      make_material_law<StableNeoHookean>("stable-neo-hookean"),
+      make_material_law<Corotational>("corotational"),
+      make_material_law<Ogden>("ogden"),
       make_material_law<Fung>("fung"),
   };  // a deque, whose elements stay where they are
 

@@ -37,7 +37,8 @@ struct MaterialLaw {
   /// which knows no others.
   template <typename Mesh>
   using CellModel = std::function<std::shared_ptr<const AnyModel<ElementOf<Mesh>::num_nodes>>(
-      const Mesh& mesh, const RowMatrix& materials, const std::vector<std::int32_t>& of_cell, SolidComponent component)>;
+      const Mesh& mesh, const RowMatrix& materials, const std::vector<std::int32_t>& of_cell,
+      SolidComponent component)>;
   CellModel<HexMesh> hexahedra = {};
   CellModel<QuadraticTetMesh> quadratic_tets = {};
 
@@ -75,8 +76,8 @@ std::vector<Material<double>> materials_of_cells(Index num_cells, const RowMatri
   std::vector<Material<double>> result;
   result.reserve(of_cell.size());
   for (const std::int32_t k : of_cell) {
-    require(k >= 0 && k < rows.rows(), "material " + std::to_string(k) + " does not exist, expected 0 to " +
-                                           std::to_string(rows.rows() - 1));
+    require(k >= 0 && k < rows.rows(),
+            "material " + std::to_string(k) + " does not exist, expected 0 to " + std::to_string(rows.rows() - 1));
     result.push_back(materials[k]);
   }
   return result;
@@ -137,10 +138,8 @@ MaterialLaw make_material_law(std::string name) {
             std::ranges::copy(values, parameters.begin());
             return objection_to<Material>(material_of<Material>(parameters));
           },
-      .tets =
-          [](const TetMesh& mesh, const RowMatrix& materials, const std::vector<std::int32_t>& of_tet) {
-            return erased_solid<Material>(mesh, materials, of_tet);
-          },
+      .tets = [](const TetMesh& mesh, const RowMatrix& materials,
+                 const std::vector<std::int32_t>& of_tet) { return erased_solid<Material>(mesh, materials, of_tet); },
       .hexahedra = cells,
       .quadratic_tets = cells,
   };

@@ -64,7 +64,8 @@ class RecordedMaterial {
     return program;
   }
   template <typename Real, std::size_t num_outputs>
-  static std::array<Real, num_outputs> run(const Program& program, const Material<Real>& material, const Matrix3<Real>& F) {
+  static std::array<Real, num_outputs> run(const Program& program, const Material<Real>& material,
+                                           const Matrix3<Real>& F) {
     std::array<Real, num_parameters + 9> inputs;
     std::ranges::copy(parameters_of(material), inputs.begin());
     std::copy_n(F.data(), 9, inputs.begin() + num_parameters);

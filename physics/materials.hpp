@@ -27,8 +27,7 @@ concept MaterialOver = requires(const Material& material, const Matrix3<Real>& F
 
 template <typename Real>
 Real determinant(const Matrix3<Real>& F) {
-  return F(0, 0) * (F(1, 1) * F(2, 2) - F(1, 2) * F(2, 1)) +
-         F(0, 1) * (F(1, 2) * F(2, 0) - F(1, 0) * F(2, 2)) +
+  return F(0, 0) * (F(1, 1) * F(2, 2) - F(1, 2) * F(2, 1)) + F(0, 1) * (F(1, 2) * F(2, 0) - F(1, 0) * F(2, 2)) +
          F(0, 2) * (F(1, 0) * F(2, 1) - F(1, 1) * F(2, 0));
 }
 
@@ -130,8 +129,8 @@ struct MooneyRivlin {
     const Real I1 = C.trace();
     const Real I2 = Real(0.5) * (I1 * I1 - C.squaredNorm());
     const Real s = reciprocal_cbrt(J), s2 = s * s;
-    const Real psi = c10 * (s2 * I1 - Real(3)) + c01 * (s2 * s2 * I2 - Real(3)) +
-                     Real(0.5) * bulk * (J - Real(1)) * (J - Real(1));
+    const Real psi =
+        c10 * (s2 * I1 - Real(3)) + c01 * (s2 * s2 * I2 - Real(3)) + Real(0.5) * bulk * (J - Real(1)) * (J - Real(1));
     return where_positive(J, psi, Real(std::numeric_limits<double>::infinity()));
   }
 

@@ -58,8 +58,7 @@ class Newmark {
       : system_(system), h_(h), options_(options), step_(system, h, options) {
     require(std::isfinite(h) && h > 0, "time step is " + std::to_string(h) + " s, expected > 0");
     require(options.beta > 0 && options.gamma > 0, "Newmark's beta and gamma have to be > 0 (implicit)");
-    require(options.tolerance > 0,
-            "Newmark's tolerance is " + std::to_string(options.tolerance) + ", expected > 0");
+    require(options.tolerance > 0, "Newmark's tolerance is " + std::to_string(options.tolerance) + ", expected > 0");
   }
 
   /// The acceleration that u and v imply under this load; call it after setting a state by hand.
@@ -94,9 +93,7 @@ class Newmark {
 
   /// Kinetic plus elastic energy [J].
   double energy(const State& state) const { return kinetic_energy(state) + system_.energy(state.u); }
-  double kinetic_energy(const State& state) const {
-    return 0.5 * state.v.dot(system_.mass().cwiseProduct(state.v));
-  }
+  double kinetic_energy(const State& state) const { return 0.5 * state.v.dot(system_.mass().cwiseProduct(state.v)); }
 
  private:
   /// φ(u) = ½ c_m ‖u − ũ‖²_M + ½ c_d ‖u − ũ‖²_D + ṽᵀ D u + E(u) + ½ uᵀ k u − f_extᵀ u with ∂φ/∂u = M a + D v
@@ -125,8 +122,7 @@ class Newmark {
 
     double value(VectorIn u) const {
       const Vector du = u - u_tilde_;
-      double phi =
-          0.5 * c_m_ * du.dot(system_.mass().cwiseProduct(du)) + system_.energy(u) - load_->force.dot(u);
+      double phi = 0.5 * c_m_ * du.dot(system_.mass().cwiseProduct(du)) + system_.energy(u) - load_->force.dot(u);
       if (damped()) phi += 0.5 * c_d_ * du.dot(damp(du)) + damping_force_.dot(u);
       if (load_->has_stiffness()) phi += 0.5 * u.dot(load_->stiffness * u);
       return phi;
@@ -194,8 +190,7 @@ class Newmark {
       return {newton, newton.iterations};
     }
     prepare_rest_jacobian(load);
-    const QuasiNewtonOptions options{.tolerance = options_.tolerance,
-                                     .max_iterations = options_.max_iterations};
+    const QuasiNewtonOptions options{.tolerance = options_.tolerance, .max_iterations = options_.max_iterations};
     BroydenMemory broyden;
     const QuasiNewtonReport report = options_.solver == NonlinearSolver::Bfgs
                                          ? quasi_newton_solve(step_, solver_, bfgs_, u, options)

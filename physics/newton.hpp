@@ -18,10 +18,8 @@ concept SmoothObjective = requires(O& objective, VectorIn u, VectorOut g, typena
   { objective.value(u) } -> std::convertible_to<double>;
   objective.gradient(u, g);
   objective.hessian(u, H);
-  { objective.scale(u) } -> std::convertible_to<double>;  // valid for the u of the last call of gradient
-  {
-    objective.metric()
-    } -> std::convertible_to<const Vector&>;  // positive diagonal that makes H definite when added
+  { objective.scale(u) } -> std::convertible_to<double>;         // valid for the u of the last call of gradient
+  { objective.metric() } -> std::convertible_to<const Vector&>;  // positive diagonal that makes H definite when added
 };
 
 /// r(u) = 0 with the Jacobian J = ∂r/∂u, for forces that need not have a potential; `scale` as above.

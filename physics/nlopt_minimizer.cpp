@@ -51,8 +51,7 @@ struct Run {
       if (reached <= tolerance) throw nlopt::forced_stop();
     }
     if (gradient)
-      Eigen::Map<Vector>(gradient, g.size()) =
-          L.size() > 0 ? Vector(L.triangularView<Eigen::Lower>().solve(g)) : g;
+      Eigen::Map<Vector>(gradient, g.size()) = L.size() > 0 ? Vector(L.triangularView<Eigen::Lower>().solve(g)) : g;
     return std::isfinite(value) ? value : HUGE_VAL;
   }
 };

@@ -7,11 +7,10 @@
 
 namespace supple {
 
-NodeNumbering::NodeNumbering(Index num_nodes, const std::vector<Index>& fixed_nodes)
-    : free_index_(num_nodes, 0) {
+NodeNumbering::NodeNumbering(Index num_nodes, const std::vector<Index>& fixed_nodes) : free_index_(num_nodes, 0) {
   for (const Index v : fixed_nodes) {
-    require(v >= 0 && v < num_nodes, "fixed node " + std::to_string(v) + " does not exist, expected 0 to " +
-                                         std::to_string(num_nodes - 1));
+    require(v >= 0 && v < num_nodes,
+            "fixed node " + std::to_string(v) + " does not exist, expected 0 to " + std::to_string(num_nodes - 1));
     free_index_[v] = -1;
   }
   for (Index v = 0; v < num_nodes; ++v)
@@ -52,18 +51,15 @@ NodeIncidence::NodeIncidence(const std::vector<Index>& stencils, Index stencil_s
   for (std::size_t slot = 0; slot < stencils.size(); ++slot) {
     const Index v = stencils[slot];
     require(v >= 0 && v < num_nodes, "component " + std::to_string(slot / stencil_size) + " names node " +
-                                         std::to_string(v) + ", expected 0 to " +
-                                         std::to_string(num_nodes - 1));
+                                         std::to_string(v) + ", expected 0 to " + std::to_string(num_nodes - 1));
     ++first_[v + 1];
   }
   for (Index v = 0; v < num_nodes; ++v) first_[v + 1] += first_[v];
   std::vector<Index> next(first_.begin(), first_.end() - 1);
-  for (std::size_t slot = 0; slot < stencils.size(); ++slot)
-    slots_[next[stencils[slot]]++] = static_cast<Index>(slot);
+  for (std::size_t slot = 0; slot < stencils.size(); ++slot) slots_[next[stencils[slot]]++] = static_cast<Index>(slot);
 }
 
-void NodeBlockPattern::build(const std::vector<Index>& stencils, Index stencil_size,
-                             const NodeIncidence& incidence) {
+void NodeBlockPattern::build(const std::vector<Index>& stencils, Index stencil_size, const NodeIncidence& incidence) {
   stencil_size_ = stencil_size;
   const Index num_free = numbering_.num_free();
   std::vector<std::vector<std::int32_t>> lists(num_free);
@@ -74,8 +70,7 @@ void NodeBlockPattern::build(const std::vector<Index>& stencils, Index stencil_s
       for (const Index slot : incidence.of(numbering_.free_nodes()[f])) {
         const Index* nodes = stencils.data() + slot / stencil_size * stencil_size;
         for (Index b = 0; b < stencil_size; ++b)
-          if (const Index g = numbering_.free_index(nodes[b]); g >= 0)
-            list.push_back(static_cast<std::int32_t>(g));
+          if (const Index g = numbering_.free_index(nodes[b]); g >= 0) list.push_back(static_cast<std::int32_t>(g));
       }
       std::sort(list.begin(), list.end());
       list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -102,10 +97,9 @@ void NodeBlockPattern::build(const std::vector<Index>& stencils, Index stencil_s
           std::int32_t place = -1;
           if (column >= 0 && row >= 0) {
             const auto list_begin = neighbors_.begin() + first_[column];
-            place = static_cast<std::int32_t>(std::lower_bound(list_begin,
-                                                               neighbors_.begin() + first_[column + 1],
-                                                               static_cast<std::int32_t>(row)) -
-                                              list_begin);
+            place = static_cast<std::int32_t>(
+                std::lower_bound(list_begin, neighbors_.begin() + first_[column + 1], static_cast<std::int32_t>(row)) -
+                list_begin);
           }
           block_[(i * stencil_size + a) * stencil_size + b] = place;
         }
@@ -127,8 +121,7 @@ SparseMatrix NodeBlockPattern::zero_matrix() const {
       const Index column = f * node_dim_ + c;
       int* at = inner + outer[column];
       for (Index k = 0; k < count; ++k)
-        for (Index r = 0; r < node_dim_; ++r)
-          *at++ = static_cast<int>(neighbors_[first_[f] + k] * node_dim_ + r);
+        for (Index r = 0; r < node_dim_; ++r) *at++ = static_cast<int>(neighbors_[first_[f] + k] * node_dim_ + r);
       outer[column + 1] = outer[column] + static_cast<int>(count * node_dim_);
     }
   }

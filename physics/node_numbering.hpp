@@ -46,8 +46,7 @@ class NodeIncidence {
 /// that share a component; and where in it the entries of each component go.
 class NodeBlockPattern {
  public:
-  NodeBlockPattern(const NodeNumbering& numbering, Index node_dim)
-      : numbering_(numbering), node_dim_(node_dim) {}
+  NodeBlockPattern(const NodeNumbering& numbering, Index node_dim) : numbering_(numbering), node_dim_(node_dim) {}
   void build(const std::vector<Index>& stencils, Index stencil_size, const NodeIncidence& incidence);
 
   Index num_nonzeros() const { return node_dim_ * node_dim_ * static_cast<Index>(neighbors_.size()); }
@@ -64,8 +63,7 @@ class NodeBlockPattern {
   std::vector<Index> first_;               // of each free node's list in neighbors_
   std::vector<std::int32_t> neighbors_;    // free numbers, ascending
   std::vector<std::int32_t> column_node_;  // per component and corner: free number or −1
-  std::vector<std::int32_t>
-      block_;  // per component, column corner, row corner: place in the neighbour list, or −1
+  std::vector<std::int32_t> block_;  // per component, column corner, row corner: place in the neighbour list, or −1
 };
 
 }  // namespace supple

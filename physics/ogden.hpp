@@ -54,7 +54,8 @@ struct Ogden {
             for (int a = 0; a < 3; ++a)
               for (int b = 0; b < 3; ++b) {
                 c += f(i, a) * p.N(J, a) * D(a, b) * f(k, b) * p.N(L, b);
-                if (a != b) c += Real(0.5) * G(a, b) * f(i, a) * p.N(J, b) * (f(k, a) * p.N(L, b) + f(k, b) * p.N(L, a));
+                if (a != b)
+                  c += Real(0.5) * G(a, b) * f(i, a) * p.N(J, b) * (f(k, a) * p.N(L, b) + f(k, b) * p.N(L, a));
               }
             if (i == k) c += S(J, L);
             C(i + 3 * J, k + 3 * L) = c;
@@ -72,7 +73,8 @@ struct Ogden {
     std::array<Vector3<Real>, 3> excess;  // λ̄ᵢ^α_p − 1 for each p
 
     Principal(const Ogden& material, const Matrix3<Real>& F)
-        : bulk(material.bulk), mu{material.mu1, material.mu2, material.mu3},
+        : bulk(material.bulk),
+          mu{material.mu1, material.mu2, material.mu3},
           alpha{material.alpha1, material.alpha2, material.alpha3} {
       using std::exp, std::log;
       const Real undefined = Real(std::numeric_limits<double>::quiet_NaN());

@@ -1,9 +1,8 @@
 #include <core/check.hpp>
 #include <physics/plugin.hpp>
 
-#include <dlfcn.h>
-
 #include <algorithm>
+#include <dlfcn.h>
 #include <set>
 
 namespace supple {

@@ -41,16 +41,19 @@ void load_plugin(const std::filesystem::path& path);
 #define SUPPLE_ABI_STRINGS ""
 #endif
 /// What a program and its plug-ins must have in common, as seen by the translation unit that asks.
-#define SUPPLE_PLUGIN_ABI                                                                                         \
-  "Supple " SUPPLE_VERSION ", compiler " SUPPLE_ABI_TEXT(__GNUC__) ", ABI " SUPPLE_ABI_TEXT(__GXX_ABI_VERSION)    \
-  SUPPLE_ABI_STRINGS ", Eigen " SUPPLE_ABI_TEXT(EIGEN_WORLD_VERSION) "." SUPPLE_ABI_TEXT(EIGEN_MAJOR_VERSION) "." \
-  SUPPLE_ABI_TEXT(EIGEN_MINOR_VERSION) " aligned to " SUPPLE_ABI_TEXT(EIGEN_MAX_ALIGN_BYTES)
+#define SUPPLE_PLUGIN_ABI                                                                                           \
+  "Supple " SUPPLE_VERSION ", compiler " SUPPLE_ABI_TEXT(__GNUC__) ", ABI " SUPPLE_ABI_TEXT(__GXX_ABI_VERSION)      \
+      SUPPLE_ABI_STRINGS                                                                                            \
+      ", Eigen " SUPPLE_ABI_TEXT(EIGEN_WORLD_VERSION) "." SUPPLE_ABI_TEXT(EIGEN_MAJOR_VERSION) "." SUPPLE_ABI_TEXT( \
+          EIGEN_MINOR_VERSION) " aligned to " SUPPLE_ABI_TEXT(EIGEN_MAX_ALIGN_BYTES)
 
 /// Defines what the program looks for; followed by a body that adds to `registry`.
-#define SUPPLE_PLUGIN(registry)                                                                    \
-  static void supple_plugin_add(supple::PluginRegistry& registry);                                 \
-  extern "C" [[gnu::visibility("default")]] const char* supple_plugin_abi() { return SUPPLE_PLUGIN_ABI; } \
-  extern "C" [[gnu::visibility("default")]] void supple_plugin(supple::PluginRegistry& all) {      \
-    supple_plugin_add(all);                                                                        \
-  }                                                                                                \
+#define SUPPLE_PLUGIN(registry)                                                               \
+  static void supple_plugin_add(supple::PluginRegistry& registry);                            \
+  extern "C" [[gnu::visibility("default")]] const char* supple_plugin_abi() {                 \
+    return SUPPLE_PLUGIN_ABI;                                                                 \
+  }                                                                                           \
+  extern "C" [[gnu::visibility("default")]] void supple_plugin(supple::PluginRegistry& all) { \
+    supple_plugin_add(all);                                                                   \
+  }                                                                                           \
   static void supple_plugin_add(supple::PluginRegistry& registry)

@@ -27,8 +27,7 @@ class BroydenMemory {
   template <typename Solver>
   Vector inverse_times(const Solver& solver, VectorIn g) const {
     Vector d = solver.solve(g);
-    for (std::size_t j = 0; j + 1 < steps_.size(); ++j)
-      d += steps_[j + 1] * (steps_[j].dot(d) / squared_norms_[j]);
+    for (std::size_t j = 0; j + 1 < steps_.size(); ++j) d += steps_[j + 1] * (steps_[j].dot(d) / squared_norms_[j]);
     if (!steps_.empty()) d /= 1 + steps_.back().dot(d) / squared_norms_.back();
     return d;
   }
@@ -55,8 +54,8 @@ struct QuasiNewtonReport : Report {
 /// line search replaces it, clears the memory, and the solver keeps the new one for later calls.
 /// \param memory  a BroydenMemory that is empty, or a BfgsMemory, which may know steps of similar problems.
 template <SmoothObjective O, typename Memory>
-QuasiNewtonReport quasi_newton_solve(O& objective, SpdSolver<typename O::MatrixType>& solver, Memory& memory,
-                                     Vector& u, const QuasiNewtonOptions& options = {}) {
+QuasiNewtonReport quasi_newton_solve(O& objective, SpdSolver<typename O::MatrixType>& solver, Memory& memory, Vector& u,
+                                     const QuasiNewtonOptions& options = {}) {
   QuasiNewtonReport report;
   Vector g(u.size()), g_trial(u.size());
   objective.gradient(u, g);
@@ -79,9 +78,8 @@ QuasiNewtonReport quasi_newton_solve(O& objective, SpdSolver<typename O::MatrixT
 
     ++taken;
     const double rate = std::log(trial_norm / first_norm) / taken;  // of the logarithm of ‖g‖, per iteration
-    const bool slow =
-        !(trial_norm < 2 * norm) ||
-        (taken >= 2 && !(std::log(target / trial_norm) / rate <= options.refresh_cost && rate < 0));
+    const bool slow = !(trial_norm < 2 * norm) ||
+                      (taken >= 2 && !(std::log(target / trial_norm) / rate <= options.refresh_cost && rate < 0));
     if (!slow || trial_norm <= target) {
       memory.add(std::move(step), g_trial - g);
       u = trial;

@@ -62,7 +62,8 @@ Polar<Real> polar(const Matrix3<Real>& F) {
   Real best = Real(-1);
   for (int column = 0; column < 4; ++column) {
     const Real diagonal = minor(column, column), size = where_positive(diagonal, diagonal, -diagonal);
-    for (int row = 0; row < 4; ++row) q[row] = where_positive(size - best, minor(row, column), column == 0 ? zero : q[row]);
+    for (int row = 0; row < 4; ++row)
+      q[row] = where_positive(size - best, minor(row, column), column == 0 ? zero : q[row]);
     best = where_positive(size - best, size, best);
   }
   const Real length2 = q.squaredNorm(), s = where_positive(length2, two / length2, zero);

@@ -12,10 +12,10 @@ namespace supple {
 /// A surface with materials, thickness, density, supports and damping.
 struct Shell {
   TriangleMesh mesh;
-  std::vector<ShellMaterial> materials = {};      ///< one for all triangles, or one each
-  Vector thickness = Vector::Constant(1, 0.01);   ///< [m], one for all triangles or one each; what the mass needs
-  Vector density = Vector::Constant(1, 1000);     ///< [kg/m³], one for all triangles or one each
-  std::vector<Index> fixed_nodes = {};            ///< ascending
+  std::vector<ShellMaterial> materials = {};     ///< one for all triangles, or one each
+  Vector thickness = Vector::Constant(1, 0.01);  ///< [m], one for all triangles or one each; what the mass needs
+  Vector density = Vector::Constant(1, 1000);    ///< [kg/m³], one for all triangles or one each
+  std::vector<Index> fixed_nodes = {};           ///< ascending
   RayleighDamping damping = {};
 
   Vector nodal_mass() const { return lumped_mass(mesh, density, thickness); }  ///< n [kg]

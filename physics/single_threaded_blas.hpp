@@ -26,8 +26,7 @@ class SingleThreadedBlas {
  private:
   // Looked up at run time, because any BLAS may stand behind the system's libblas.
   static auto set_threads() -> void (*)(int) {
-    static const auto function =
-        reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+    static const auto function = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
     return function;
   }
   static auto get_threads() -> int (*)() {

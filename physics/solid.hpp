@@ -21,12 +21,12 @@ struct SolidOf {
   using Element = ElementOf<Mesh>;
 
   Mesh mesh = {};
-  std::string law = "stvk";  ///< one of material_laws()
-  RowMatrix parameters = {};  ///< one row a material, columns as material_law(law).parameters
-  std::vector<std::int32_t> material_of_cell = {};  ///< a row of `parameters` a cell; empty: row 0 for all
-  Vector density = Vector::Constant(1, 1000);  ///< [kg/m³], one for all cells or one each
+  std::string law = "stvk";                            ///< one of material_laws()
+  RowMatrix parameters = {};                           ///< one row a material, columns as material_law(law).parameters
+  std::vector<std::int32_t> material_of_cell = {};     ///< a row of `parameters` a cell; empty: row 0 for all
+  Vector density = Vector::Constant(1, 1000);          ///< [kg/m³], one for all cells or one each
   SolidComponent component = SolidComponent::Element;  ///< of its force model; a linear tet is its one Gauss point
-  std::vector<Index> fixed_nodes = {};         ///< ascending
+  std::vector<Index> fixed_nodes = {};                 ///< ascending
   RayleighDamping damping = {};
 
   Vector nodal_mass() const {  ///< n [kg]

@@ -48,9 +48,8 @@ class SolidElasticity {
     static constexpr int rest_dofs = 3 * rest_nodes;
     using Gradients = Eigen::Matrix<Real, rest_nodes, 3>;
 
-    std::array<std::array<Real, rest_dofs>, num_points>
-        gradients;                        ///< of N₁ … at rest, J-th derivatives in turn [1/m]
-    std::array<Real, num_points> volume;  ///< w_g det J_g at rest [m³]
+    std::array<std::array<Real, rest_dofs>, num_points> gradients;  ///< of N₁ … at rest, J-th derivatives in turn [1/m]
+    std::array<Real, num_points> volume;                            ///< w_g det J_g at rest [m³]
     Material<Real> material;
 
     Real energy(const Local<local_dofs, Real>& u) const {
@@ -68,8 +67,7 @@ class SolidElasticity {
         const Matrix3<Real> P = stress(material, gradient(d, g)) * volume[g];
         const auto G = gradients_at(g);
         for (int a = 0; a < rest_nodes; ++a)
-          for (int i = 0; i < 3; ++i)
-            add(f[3 + 3 * a + i], P(i, 0) * G(a, 0) + P(i, 1) * G(a, 1) + P(i, 2) * G(a, 2));
+          for (int i = 0; i < 3; ++i) add(f[3 + 3 * a + i], P(i, 0) * G(a, 0) + P(i, 1) * G(a, 1) + P(i, 2) * G(a, 2));
       }
       for (int a = 1; a < stencil_size; ++a)
         for (int i = 0; i < 3; ++i) f[i] -= f[3 * a + i];
@@ -95,9 +93,7 @@ class SolidElasticity {
     }
 
     /// F at Gauss point g of the component, given the displacements u of its nodes.
-    Matrix3<Real> gradient(const Local<local_dofs, Real>& u, int g = 0) const {
-      return gradient(edges(u), g);
-    }
+    Matrix3<Real> gradient(const Local<local_dofs, Real>& u, int g = 0) const { return gradient(edges(u), g); }
 
    private:
     using Edges = Eigen::Matrix<Real, 3, rest_nodes>;
@@ -109,9 +105,7 @@ class SolidElasticity {
         for (int i = 0; i < 3; ++i) d(i, a) = u[3 + 3 * a + i] - u[i];
       return d;
     }
-    Eigen::Map<const Gradients> gradients_at(int g) const {
-      return Eigen::Map<const Gradients>(gradients[g].data());
-    }
+    Eigen::Map<const Gradients> gradients_at(int g) const { return Eigen::Map<const Gradients>(gradients[g].data()); }
     Matrix3<Real> gradient(const Edges& d, int g) const {
       const auto G = gradients_at(g);
       Matrix3<Real> F;
@@ -139,12 +133,10 @@ class SolidElasticity {
         const Vector3<Real> G_b{G(b, 0) * volume[g], G(b, 1) * volume[g], G(b, 2) * volume[g]};
         for (int k = 0; k < 3; ++k) {
           Local<9, Real> half;  // Σ_L C_iJkL V ∇N_bL over iJ
-          for (int iJ = 0; iJ < 9; ++iJ)
-            half[iJ] = C(iJ, k) * G_b[0] + C(iJ, k + 3) * G_b[1] + C(iJ, k + 6) * G_b[2];
+          for (int iJ = 0; iJ < 9; ++iJ) half[iJ] = C(iJ, k) * G_b[0] + C(iJ, k + 3) * G_b[1] + C(iJ, k + 6) * G_b[2];
           for (int a = 0; a <= b; ++a)
             for (int i = 0; i < 3; ++i)
-              add(K(3 + 3 * a + i, 3 + 3 * b + k),
-                  G(a, 0) * half[i] + G(a, 1) * half[i + 3] + G(a, 2) * half[i + 6]);
+              add(K(3 + 3 * a + i, 3 + 3 * b + k), G(a, 0) * half[i] + G(a, 1) * half[i + 3] + G(a, 2) * half[i + 6]);
         }
       }
     }
@@ -153,8 +145,7 @@ class SolidElasticity {
     static void complete(LocalMatrix<local_dofs, Real>& K) {
       for (int b = 0; b < rest_nodes; ++b)
         for (int k = 0; k < 3; ++k)
-          for (int row = 3 + 3 * (b + 1); row < local_dofs; ++row)
-            K(row, 3 + 3 * b + k) = K(3 + 3 * b + k, row);
+          for (int row = 3 + 3 * (b + 1); row < local_dofs; ++row) K(row, 3 + 3 * b + k) = K(3 + 3 * b + k, row);
       for (int column = 3; column < local_dofs; ++column)
         for (int i = 0; i < 3; ++i) {
           Real sum = K(3 + i, column);
@@ -177,8 +168,7 @@ class SolidElasticity {
       : SolidElasticity(mesh.nodes, mesh.cells, materials) {}
   SolidElasticity(const CellMesh<stencil_size>& mesh, const Material<double>& material)
       : SolidElasticity(mesh, std::vector<Material<double>>{material}) {}
-  SolidElasticity(const TetMesh& mesh,
-                  const std::vector<Material<double>>& materials) requires(stencil_size == 4)
+  SolidElasticity(const TetMesh& mesh, const std::vector<Material<double>>& materials) requires(stencil_size == 4)
       : SolidElasticity(mesh.nodes, mesh.tets, materials) {}
   SolidElasticity(const TetMesh& mesh, const Material<double>& material) requires(stencil_size == 4)
       : SolidElasticity(mesh, std::vector<Material<double>>{material}) {}
@@ -191,9 +181,7 @@ class SolidElasticity {
 
   double energy(Index i, const Local<local_dofs>& u_i) const { return terms_[i].energy(u_i); }
   Local<local_dofs> force(Index i, const Local<local_dofs>& u_i) const { return terms_[i].force(u_i); }
-  LocalMatrix<local_dofs> stiffness(Index i, const Local<local_dofs>& u_i) const {
-    return terms_[i].stiffness(u_i);
-  }
+  LocalMatrix<local_dofs> stiffness(Index i, const Local<local_dofs>& u_i) const { return terms_[i].stiffness(u_i); }
 
  private:
   using Cells = std::vector<std::array<Index, stencil_size>>;
@@ -206,11 +194,9 @@ class SolidElasticity {
                 " cells, expected one for all or one each");
     terms_.reserve(count * components_per_cell);
     for (Index e = 0; e < count; ++e) {
-      const auto points =
-          cell_points<Element>(cell_positions<Element>(nodes, cells, e), e, Element::gauss_points);
+      const auto points = cell_points<Element>(cell_positions<Element>(nodes, cells, e), e, Element::gauss_points);
       for (int first = 0; first < points_per_cell; first += num_points) {
-        Term<double>& term =
-            terms_.emplace_back(Term<double>{{}, {}, materials[materials.size() == 1 ? 0 : e]});
+        Term<double>& term = terms_.emplace_back(Term<double>{{}, {}, materials[materials.size() == 1 ? 0 : e]});
         for (int g = 0; g < num_points; ++g) {
           const CellPoint<Element>& point = points[first + g];
           Eigen::Map<typename Term<double>::Gradients>(term.gradients[g].data()) =

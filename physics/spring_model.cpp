@@ -12,8 +12,8 @@ SpringModel::SpringModel(const Points& nodes, const std::vector<Ends>& springs, 
     const auto [a, b] = springs[i];
     const std::string name = "spring " + std::to_string(i);
     for (const Index v : springs[i])
-      require(v >= 0 && v < num_nodes(), name + " names node " + std::to_string(v) + ", expected 0 to " +
-                                             std::to_string(num_nodes() - 1));
+      require(v >= 0 && v < num_nodes(),
+              name + " names node " + std::to_string(v) + ", expected 0 to " + std::to_string(num_nodes() - 1));
     const Point rest = (nodes.row(b) - nodes.row(a)).transpose();
     const double k = stiffness[stiffness.size() == 1 ? 0 : static_cast<Index>(i)];
     require(rest.norm() > 0, name + " has no length: its ends are at the same place");

@@ -54,9 +54,7 @@ class SpringModel {
     }
 
    private:
-    detail::Segment<Real> segment(const Local<6, Real>& u) const {
-      return {rest.data(), u.data(), u.data() + 3};
-    }
+    detail::Segment<Real> segment(const Local<6, Real>& u) const { return {rest.data(), u.data(), u.data() + 3}; }
   };
 
   /// \param stiffness  k [N/m], one for all springs or one each; > 0. \throws std::invalid_argument on

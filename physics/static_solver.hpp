@@ -32,8 +32,7 @@ class StaticSolver {
   using MatrixType = typename System::MatrixType;
 
   /// \param system  must outlive the solver.
-  explicit StaticSolver(const System& system, const StaticOptions& options = {})
-      : system_(system), options_(options) {
+  explicit StaticSolver(const System& system, const StaticOptions& options = {}) : system_(system), options_(options) {
     require(options.tolerance > 0, "tolerance is " + std::to_string(options.tolerance) + ", expected > 0");
   }
 

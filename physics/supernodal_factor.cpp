@@ -12,13 +12,13 @@
 
 extern "C" {
 void dpotrf_(const char* uplo, const int* n, double* A, const int* lda, int* info);
-void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m,
-            const int* n, const double* alpha, const double* A, const int* lda, double* B, const int* ldb);
-void dsyrk_(const char* uplo, const char* trans, const int* n, const int* k, const double* alpha,
-            const double* A, const int* lda, const double* beta, double* C, const int* ldc);
-void dgemm_(const char* transa, const char* transb, const int* m, const int* n, const int* k,
-            const double* alpha, const double* A, const int* lda, const double* B, const int* ldb,
-            const double* beta, double* C, const int* ldc);
+void dtrsm_(const char* side, const char* uplo, const char* trans, const char* diag, const int* m, const int* n,
+            const double* alpha, const double* A, const int* lda, double* B, const int* ldb);
+void dsyrk_(const char* uplo, const char* trans, const int* n, const int* k, const double* alpha, const double* A,
+            const int* lda, const double* beta, double* C, const int* ldc);
+void dgemm_(const char* transa, const char* transb, const int* m, const int* n, const int* k, const double* alpha,
+            const double* A, const int* lda, const double* B, const int* ldb, const double* beta, double* C,
+            const int* ldc);
 }
 
 namespace supple {
@@ -45,13 +45,11 @@ void subtract_square(int n, int k, const double* A, int lda, double beta, double
 bool factor_diagonal(int n, double* A, int lda) {
   int info = 0;
   dpotrf_("L", &n, A, &lda, &info);
-  return info == 0 &&
-         std::isfinite(A[(n - 1) * (static_cast<std::size_t>(lda) + 1)]);  // NaN reaches the last pivot
+  return info == 0 && std::isfinite(A[(n - 1) * (static_cast<std::size_t>(lda) + 1)]);  // NaN reaches the last pivot
 }
 
 /// Lower trapezoid of C = beta C − A Bᵀ in tiles, where B is the first `cols` of the rows of A.
-void subtract_square_in_tiles(int rows, int cols, int k, const double* A, int lda, double beta, double* C,
-                              int ldc) {
+void subtract_square_in_tiles(int rows, int cols, int k, const double* A, int lda, double beta, double* C, int ldc) {
   std::vector<std::pair<int, int>> tiles;
   for (int j = 0; j < cols; j += tile)
     for (int i = j; i < rows; i += tile) tiles.emplace_back(i, j);
@@ -62,21 +60,18 @@ void subtract_square_in_tiles(int rows, int cols, int k, const double* A, int ld
     const int square = i == j ? n : 0, rest = m - square;
     subtract_square(square, k, A + i, lda, beta, out, ldc);
     if (rest > 0)
-      dgemm_("N", "T", &rest, &n, &k, &minus_one, A + i + square, &lda, A + j, &lda, &beta, out + square,
-             &ldc);
+      dgemm_("N", "T", &rest, &n, &k, &minus_one, A + i + square, &lda, A + j, &lda, &beta, out + square, &ldc);
   });
 }
 
 }  // namespace
 
-SupernodalFactor::SupernodalFactor(SupernodalPattern pattern, const SparseMatrix& A)
-    : pattern_(std::move(pattern)) {
+SupernodalFactor::SupernodalFactor(SupernodalPattern pattern, const SparseMatrix& A) : pattern_(std::move(pattern)) {
   const int count = pattern_.num_supernodes();
   const Index n = dim();
   std::vector<int> supernode_of(n);
   for (int s = 0; s < count; ++s)
-    std::fill(supernode_of.begin() + pattern_.first_column[s],
-              supernode_of.begin() + pattern_.first_column[s + 1], s);
+    std::fill(supernode_of.begin() + pattern_.first_column[s], supernode_of.begin() + pattern_.first_column[s + 1], s);
 
   value_start_.assign(1, 0);
   parent_.resize(count);
@@ -85,8 +80,7 @@ SupernodalFactor::SupernodalFactor(SupernodalPattern pattern, const SparseMatrix
   std::vector<double> factor_work(count), solve_work(count);
   for (int s = 0; s < count; ++s) {
     const double w = pattern_.width(s), h = pattern_.height(s), below = h - w;
-    value_start_.push_back(value_start_.back() +
-                           static_cast<std::size_t>(pattern_.width(s)) * pattern_.height(s));
+    value_start_.push_back(value_start_.back() + static_cast<std::size_t>(pattern_.width(s)) * pattern_.height(s));
     place_start_.push_back(place_start_.back() + pattern_.num_below(s));
     parent_[s] = below > 0 ? supernode_of[*pattern_.rows_below(s)] : -1;
     if (parent_[s] >= 0) children_[parent_[s]].push_back(s);
@@ -134,9 +128,8 @@ SupernodalFactor::SupernodalFactor(SupernodalPattern pattern, const SparseMatrix
   for (int s = 0; s < count; ++s) {
     number_rows(s);
     for (std::size_t slot = source_start_[s]; slot < source_start_[s + 1]; ++slot)
-      destination_[slot] =
-          value_start_[s] + place[entry[slot].first] +
-          static_cast<std::size_t>(entry[slot].second - pattern_.first_column[s]) * pattern_.height(s);
+      destination_[slot] = value_start_[s] + place[entry[slot].first] +
+                           static_cast<std::size_t>(entry[slot].second - pattern_.first_column[s]) * pattern_.height(s);
   }
 
   for_factor_ = partition(factor_work, 1.0 / 64);
@@ -184,8 +177,7 @@ bool SupernodalFactor::eliminate(int s, const double* A_values, std::vector<Fron
 
   Front update(below > 0 ? new double[static_cast<std::size_t>(below) * below] : nullptr);
   if (!children_[s].empty())
-    for (int j = 0; j < below; ++j)
-      std::fill_n(update.get() + j + static_cast<std::size_t>(j) * below, below - j, 0.0);
+    for (int j = 0; j < below; ++j) std::fill_n(update.get() + j + static_cast<std::size_t>(j) * below, below - j, 0.0);
   for (const int child : children_[s]) {
     const int size = pattern_.num_below(child);
     const int* const place = place_in_parent_.data() + place_start_[child];
@@ -292,8 +284,7 @@ constexpr Index unroll = 4;
 
 /// out(i) −= Σ_j L(i, j) x_j for rows begin … end − 1 and `cols` columns of L; out(i) names a row.
 template <int lanes, typename Out>
-void subtract_rows(const double* L, Index ldl, Index begin, Index end, Index cols, const double* x,
-                   const Out& out) {
+void subtract_rows(const double* L, Index ldl, Index begin, Index end, Index cols, const double* x, const Out& out) {
   Index i = begin;
   if constexpr (lanes == 1) {
     for (; i + 32 <= end; i += 32) {
@@ -324,8 +315,7 @@ void subtract_rows(const double* L, Index ldl, Index begin, Index end, Index col
 
 /// x_j −= Σ_i L(i, j) y_i for columns begin … end − 1, over `rows` rows.
 template <int lanes>
-void subtract_columns(const double* L, Index ldl, Index rows, Index begin, Index end, const double* y,
-                      double* x) {
+void subtract_columns(const double* L, Index ldl, Index rows, Index begin, Index end, const double* y, double* x) {
   Index j = begin;
   for (; j + unroll <= end; j += unroll) {
     const double* const column = L + j * ldl;
@@ -444,8 +434,7 @@ void SupernodalFactor::solve_panel(MatrixIn B, MatrixOut X) const {
     const double* const block = values_.get() + value_start_[s];
     double* const own = x + static_cast<Index>(pattern_.first_column[s]) * lanes;
     gathered.resize(std::max(gathered.size(), static_cast<std::size_t>(below * lanes)));
-    for (Index k = 0; k < below; ++k)
-      *row<lanes>(gathered.data(), k) = *row<lanes>(x, pattern_.rows_below(s)[k]);
+    for (Index k = 0; k < below; ++k) *row<lanes>(gathered.data(), k) = *row<lanes>(x, pattern_.rows_below(s)[k]);
     ranges(in_tiles, width, 32, [&](Index begin, Index end) {
       subtract_columns<lanes>(block + width, height, below, begin, end, gathered.data(), own);
     });
@@ -470,8 +459,7 @@ void SupernodalFactor::solve_panel(MatrixIn B, MatrixOut X) const {
   for (const int s : for_solve_.top) forward(s, is_large(s), nullptr);
 
   std::vector<double> gathered;
-  for (auto s = for_solve_.top.rbegin(); s != for_solve_.top.rend(); ++s)
-    backward(*s, is_large(*s), gathered);
+  for (auto s = for_solve_.top.rbegin(); s != for_solve_.top.rend(); ++s) backward(*s, is_large(*s), gathered);
   parallel_for(num_subtrees, [&](Index k) {
     const auto [first, root] = for_solve_.subtrees[k];
     std::vector<double> own_gathered;

@@ -71,8 +71,7 @@ class SupernodalFactor {
   std::vector<std::size_t> destination_;  // where they go
   std::vector<std::size_t> source_start_;
   Partition for_factor_, for_solve_;
-  std::vector<int>
-      target_;  // of every row below: a row of X, or −1 − its place below the root of its subtree
+  std::vector<int> target_;  // of every row below: a row of X, or −1 − its place below the root of its subtree
   double flops_ = 0;
   std::unique_ptr<double[]> values_;
 };

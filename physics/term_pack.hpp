@@ -50,8 +50,7 @@ class TermPack {
   using Displacements = Local<F::local_dofs, Pack>;
 
   /// The same component in every lane.
-  TermPack(std::shared_ptr<const F> model, Index component)
-      : TermPack(std::move(model), one_component(component)) {}
+  TermPack(std::shared_ptr<const F> model, Index component) : TermPack(std::move(model), one_component(component)) {}
 
   TermPack(std::shared_ptr<const F> model, const PackIndices& components)
       : model_(std::move(model)), components_(components) {}
@@ -97,8 +96,7 @@ class TermPack<F> {
   TermPack(const std::shared_ptr<const F>& model, const PackIndices& components) {
     std::array<Pack, num_parameters> gathered;
     for (int k = 0; k < Pack::size; ++k) {
-      const auto parameters =
-          std::bit_cast<std::array<double, num_parameters>>(Scalar(model->term(components[k])));
+      const auto parameters = std::bit_cast<std::array<double, num_parameters>>(Scalar(model->term(components[k])));
       for (std::size_t p = 0; p < num_parameters; ++p) gathered[p].set(k, parameters[p]);
     }
     term_ = std::bit_cast<Packed>(gathered);
@@ -124,10 +122,9 @@ class TermPack<F> {
   using Scalar = typename F::template Term<double>;
   using Packed = typename F::template Term<Pack>;
   static constexpr std::size_t num_parameters = sizeof(Scalar) / sizeof(double);
-  static_assert(
-      std::is_trivially_copyable_v<Scalar> && std::is_trivially_copyable_v<Packed> &&
-          sizeof(Packed) == num_parameters * sizeof(Pack),
-      "Term<Real> must be an aggregate of members of type Real (or arrays of them) and nothing else");
+  static_assert(std::is_trivially_copyable_v<Scalar> && std::is_trivially_copyable_v<Packed> &&
+                    sizeof(Packed) == num_parameters * sizeof(Pack),
+                "Term<Real> must be an aggregate of members of type Real (or arrays of them) and nothing else");
 
   Packed term_;
 };

@@ -32,8 +32,8 @@ double tet_volume(const TetMesh& mesh, Index e) {
 TetShape tet_shape(const TetMesh& mesh, Index e) {
   for (const Index v : mesh.tets[e])
     if (v < 0 || v >= mesh.num_nodes())
-      throw std::invalid_argument("tet " + std::to_string(e) + " names node " + std::to_string(v) +
-                                  ", expected 0 to " + std::to_string(mesh.num_nodes() - 1));
+      throw std::invalid_argument("tet " + std::to_string(e) + " names node " + std::to_string(v) + ", expected 0 to " +
+                                  std::to_string(mesh.num_nodes() - 1));
   const EdgeVectors tet(mesh, e);
   Matrix3<double> edges;
   edges << tet.ab, tet.ac, tet.ad;
@@ -46,10 +46,9 @@ int tet_orientation(const TetMesh& mesh, Index e) {
   const EdgeVectors tet(mesh, e);
   const double det = tet.ab.cross(tet.ac).dot(tet.ad);
   const Point b = tet.ab.cwiseAbs(), c = tet.ac.cwiseAbs(), d = tet.ad.cwiseAbs();
-  const double permanent = (b[1] * c[2] + b[2] * c[1]) * d[0] + (b[2] * c[0] + b[0] * c[2]) * d[1] +
-                           (b[0] * c[1] + b[1] * c[0]) * d[2];
-  const double rounding =
-      4 * std::numeric_limits<double>::epsilon() * permanent;  // Shewchuk's (7 + 56 ε) ε, ε = 2⁻⁵³
+  const double permanent =
+      (b[1] * c[2] + b[2] * c[1]) * d[0] + (b[2] * c[0] + b[0] * c[2]) * d[1] + (b[0] * c[1] + b[1] * c[0]) * d[2];
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * permanent;  // Shewchuk's (7 + 56 ε) ε, ε = 2⁻⁵³
   return det > rounding ? 1 : det < -rounding ? -1 : 0;
 }
 
@@ -62,8 +61,7 @@ double radius_ratio(const Points& nodes, const Tet& corners) {
   const Point bc = tet.ab.cross(tet.ac), cd = tet.ac.cross(tet.ad), db = tet.ad.cross(tet.ab);
   const double det = std::abs(bc.dot(tet.ad));  // 6 V
   if (!(det > 0)) return 0;
-  const double area =
-      (bc.norm() + cd.norm() + db.norm() + (tet.ac - tet.ab).cross(tet.ad - tet.ab).norm()) / 2;
+  const double area = (bc.norm() + cd.norm() + db.norm() + (tet.ac - tet.ab).cross(tet.ad - tet.ab).norm()) / 2;
   const double inradius = det / (2 * area);
   const double circumradius =
       (tet.ad.squaredNorm() * bc + tet.ab.squaredNorm() * cd + tet.ac.squaredNorm() * db).norm() / (2 * det);

@@ -43,8 +43,7 @@ struct Names {
   std::string triangle(Index t) const { return "triangle " + number(numbers.triangle, t); }
   std::string edge(const TriangleMesh& mesh, Index side) const {
     const Index from = from_node(mesh.triangles, side), to = to_node(mesh.triangles, side);
-    return "edge (" + number(numbers.node, std::min(from, to)) + ", " +
-           number(numbers.node, std::max(from, to)) + ")";
+    return "edge (" + number(numbers.node, std::min(from, to)) + ", " + number(numbers.node, std::max(from, to)) + ")";
   }
 };
 
@@ -71,8 +70,7 @@ struct EdgeVectors {
     const Point n = ab.cross(ac), b = ab.cwiseAbs(), c = ac.cwiseAbs();
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, k = (i + 2) % 3;
-      if (std::abs(n[i]) > 4 * std::numeric_limits<double>::epsilon() * (b[j] * c[k] + b[k] * c[j]))
-        return false;
+      if (std::abs(n[i]) > 4 * std::numeric_limits<double>::epsilon() * (b[j] * c[k] + b[k] * c[j])) return false;
     }
     return true;
   }
@@ -85,8 +83,7 @@ void check_triangles(const TriangleMesh& mesh, const Names& names) {
     for (int a = 0; a < 3; ++a) {
       const Index v = triangle[a];
       if (v < 0 || v >= mesh.num_nodes())
-        throw std::invalid_argument(names.triangle(t) + " names node " + std::to_string(v) +
-                                    ", which does not exist");
+        throw std::invalid_argument(names.triangle(t) + " names node " + std::to_string(v) + ", which does not exist");
       if (std::find(triangle.begin(), triangle.begin() + a, v) != triangle.begin() + a)
         throw std::invalid_argument(names.triangle(t) + " names " + names.node(v) + " twice");
       used[v] = true;
@@ -124,8 +121,7 @@ void check_edges(const TriangleMesh& mesh, const Names& names) {
                                   names.edge(mesh, sides[0]) + ": at most two triangles can meet at an edge");
     if (sides.size() == 2 && from_node(mesh.triangles, sides[0]) == from_node(mesh.triangles, sides[1]))
       throw std::invalid_argument(triangle(0) + " and " + triangle(1) + " run along their common " +
-                                  names.edge(mesh, sides[0]) +
-                                  " in the same direction: one of them is turned over");
+                                  names.edge(mesh, sides[0]) + " in the same direction: one of them is turned over");
   });
 }
 
@@ -218,8 +214,7 @@ std::vector<Edge> boundary_edges(const TriangleMesh& mesh) {
   const std::vector<Index> neighbour = neighbour_sides(mesh);
   std::vector<Edge> edges;
   for (Index side = 0; side < static_cast<Index>(neighbour.size()); ++side)
-    if (neighbour[side] < 0)
-      edges.push_back({from_node(mesh.triangles, side), to_node(mesh.triangles, side)});
+    if (neighbour[side] < 0) edges.push_back({from_node(mesh.triangles, side), to_node(mesh.triangles, side)});
   return edges;
 }
 

@@ -15,8 +15,7 @@ struct AffineBasis {
   template <typename System>
   requires(System::node_dim == 3) NodalBasis operator()(const System& system) const {
     using Model = std::remove_cvref_t<decltype(system.model())>;
-    const FreeComponents components =
-        find_free_components(system.stencils(), Model::stencil_size, system.numbering());
+    const FreeComponents components = find_free_components(system.stencils(), Model::stencil_size, system.numbering());
     require(!components.free.empty(), "affine motions: every part of the object is held");
     Orthonormalized fields =
         mass_orthonormalize(affine_fields(system.model().rest_positions(), components), system.nodal_mass());

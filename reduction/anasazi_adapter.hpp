@@ -24,9 +24,7 @@ class Multivector {
   using View = Eigen::Map<Matrix>;
 
   Multivector(Matrix values, std::shared_ptr<Random> random)
-      : storage_(std::make_shared<Matrix>(std::move(values))),
-        columns_(storage_->cols()),
-        random_(std::move(random)) {
+      : storage_(std::make_shared<Matrix>(std::move(values))), columns_(storage_->cols()), random_(std::move(random)) {
     std::iota(columns_.begin(), columns_.end(), 0);
   }
 
@@ -199,9 +197,7 @@ class MultiVecTraits<double, supple::Multivector> {
     MV target = mv.view(index);
     for (supple::Index j = 0; j < target.cols(); ++j) target.col(j) = A.col(j);
   }
-  static void SetBlock(const MV& A, const Teuchos::Range1D& range, MV& mv) {
-    SetBlock(A, indices(range), mv);
-  }
+  static void SetBlock(const MV& A, const Teuchos::Range1D& range, MV& mv) { SetBlock(A, indices(range), mv); }
   static void Assign(const MV& A, MV& mv) {
     for (supple::Index j = 0; j < A.cols(); ++j) mv.col(j) = A.col(j);
   }

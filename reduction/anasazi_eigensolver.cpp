@@ -52,9 +52,9 @@ StandardProblem standard_problem(const SparseMatrix& K, const Vector& M_diagonal
   if (rigid.cols() > 0) require_size("rows of rigid", rigid.rows(), n);
   require(rigid.allFinite(), "smallest_eigenpairs: rigid has an entry that is not finite");
   Index worst = 0;
-  require(M_diagonal.allFinite() && M_diagonal.minCoeff(&worst) > 0,
-          "M_diagonal[" + std::to_string(worst) + "] is " + std::to_string(M_diagonal[worst]) +
-              ", expected a positive mass everywhere");
+  require(M_diagonal.allFinite() && M_diagonal.minCoeff(&worst) > 0, "M_diagonal[" + std::to_string(worst) + "] is " +
+                                                                         std::to_string(M_diagonal[worst]) +
+                                                                         ", expected a positive mass everywhere");
   StandardProblem problem{K, Matrix(n, 0)};
   problem.A.makeCompressed();
   require(problem.A.coeffs().allFinite(), "smallest_eigenpairs: K has an entry that is not finite");
@@ -160,8 +160,8 @@ class ShiftedInverse {
       // Rounding may leave K slightly indefinite, which a larger shift mends; more is the caller's mistake.
       if (shift_ > 1e-10 * problem_.norm) break;
     }
-    throw SolverError("smallest_eigenpairs: K + σM is not positive definite for σ = " +
-                      std::to_string(shift_) + " 1/s²: K has negative eigenvalues");
+    throw SolverError("smallest_eigenpairs: K + σM is not positive definite for σ = " + std::to_string(shift_) +
+                      " 1/s²: K has negative eigenvalues");
   }
 
   /// A rough value of the smallest eigenvalue that is not zero, by inverse iteration of a small block that
@@ -315,8 +315,7 @@ SparseResult sparse_pairs(const StandardProblem& problem, Index count, const Eig
     if (!result.complete || !below(next.values[0])) break;
     const Pairs more = search_largest(
         inverse, taken,
-        {std::min(probe_block, count), search.tolerance, probe_block, options.max_restarts, search.seed},
-        tick);
+        {std::min(probe_block, count), search.tolerance, probe_block, options.max_restarts, search.seed}, tick);
     result.complete = more.values.size() > 0;
     if (!result.complete) break;
     for (const double theta : more.values) result.missed += below(theta);
@@ -340,20 +339,18 @@ EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, 
   const Index n = K.rows();
   const Index available = n - problem.deflated.cols();
   require(options.num_modes >= 1 && options.num_modes <= available,
-          "num_modes is " + std::to_string(options.num_modes) + ", expected 1 … " +
-              std::to_string(available) + " (unknowns minus rigid fields)");
+          "num_modes is " + std::to_string(options.num_modes) + ", expected 1 … " + std::to_string(available) +
+              " (unknowns minus rigid fields)");
   require(options.tolerance > 0 && options.tolerance < 1,
           "tolerance is " + std::to_string(options.tolerance) + ", expected a number between 0 and 1");
-  require(options.block_size >= 0,
-          "block_size is " + std::to_string(options.block_size) + ", expected 0 or more");
+  require(options.block_size >= 0, "block_size is " + std::to_string(options.block_size) + ", expected 0 or more");
   require(options.max_restarts >= 0,
           "max_restarts is " + std::to_string(options.max_restarts) + ", expected 0 or more");
   EigenPairs result;
   if (problem.deflated.cols() > 0) {
     result.rigid_residual = product(problem.A, problem.deflated).colwise().norm().maxCoeff() / problem.norm;
     require(result.rigid_residual <= largest_rigid_force,
-            "smallest_eigenpairs: K times rigid is not zero, relative size " +
-                std::to_string(result.rigid_residual));
+            "smallest_eigenpairs: K times rigid is not zero, relative size " + std::to_string(result.rigid_residual));
   }
 
   EigenOptions chosen = options;

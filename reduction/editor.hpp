@@ -74,8 +74,7 @@ class Editor {
   double control_energy(VectorIn displacement) const {
     double sum = 0;
     for (const PointSpring& spring : handle_loads(handles_, rest_positions_).springs)
-      sum += 0.5 * spring.stiffness *
-             (displacement.segment<3>(3 * spring.node) - spring.displacement).squaredNorm();
+      sum += 0.5 * spring.stiffness * (displacement.segment<3>(3 * spring.node) - spring.displacement).squaredNorm();
     return sum;
   }
 

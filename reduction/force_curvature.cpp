@@ -37,8 +37,7 @@ double ForceCurvature::size(VectorIn x) const {
   };
   double largest = 0;
   for (Index v = 0; v < x.size() / 3; ++v) largest = std::max(largest, at(v).norm() * inverse_diameter_);
-  for (const Pair& pair : pairs_)
-    largest = std::max(largest, (at(pair.a) - at(pair.b)).norm() * pair.inverse_distance);
+  for (const Pair& pair : pairs_) largest = std::max(largest, (at(pair.a) - at(pair.b)).norm() * pair.inverse_distance);
   return largest;
 }
 

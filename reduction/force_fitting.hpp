@@ -12,7 +12,7 @@ namespace supple {
 
 /// The inner product in which Eq. 5 measures forces. Indices and weights are comparable, errors are not.
 enum class ForceNorm {
-  Mass,  ///< ‖F̄‖ for an M-orthonormal basis, as the paper may mean it; stiff directions dominate
+  Mass,       ///< ‖F̄‖ for an M-orthonormal basis, as the paper may mean it; stiff directions dominate
   Stiffness,  ///< F̄ᵀ K̄⁻¹ F̄: forces count by the displacement they would cause, which is what an integrator
               ///< sees
 };
@@ -43,8 +43,8 @@ class ForceFitting {
 
   /// \param metric  L, d × d.  \param Q  d × T poses, none of which may be free of force.
   /// The model and the subspace are shared, not copied.
-  ForceFitting(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace, Matrix metric,
-               const Matrix& Q, const std::function<void(double)>& tell_share = {})
+  ForceFitting(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace, Matrix metric, const Matrix& Q,
+               const std::function<void(double)>& tell_share = {})
       : ForceFitting(model, subspace, std::make_shared<const Matrix>(std::move(metric)), Q,
                      reduced_forces(model, *subspace, Q, tell_share)) {}
 
@@ -158,8 +158,7 @@ class ForceFitting {
       const RowMatrix packed = pack_poses<block>(fitting_->pull_back_unscaled(r));
       Vector result(size());
       parallel_ranges(size(), 32, [&](Index begin, Index end) {
-        const RowMatrix y =
-            E_.middleRows(begin * rows_per_component, (end - begin) * rows_per_component) * packed;
+        const RowMatrix y = E_.middleRows(begin * rows_per_component, (end - begin) * rows_per_component) * packed;
         for (Index k = begin; k < end; ++k) {
           Pack sum(0.0);
           for (int row = 0; row < rows_per_component; ++row) {
@@ -187,9 +186,8 @@ class ForceFitting {
         const Index ni = std::min(tile, size() - i0), nj = std::min(tile, other.size() - j0);
         const Matrix HH =
             H_.middleRows(i0 * local, ni * local) * other.H_.middleRows(j0 * local, nj * local).transpose();
-        const Matrix DND =
-            fitting_->row_products(E_.middleRows(i0 * rows_per_component, ni * rows_per_component),
-                                   NE.middleRows(j0 * local, nj * local));
+        const Matrix DND = fitting_->row_products(E_.middleRows(i0 * rows_per_component, ni * rows_per_component),
+                                                  NE.middleRows(j0 * local, nj * local));
         for (Index j = 0; j < nj; ++j)
           for (Index i = 0; i < ni; ++i)
             G(i0 + i, j0 + j) = HH.template block<local, local>(i * local, j * local)
@@ -248,8 +246,7 @@ class ForceFitting {
         for (int c = 0; c < first_dof; ++c) u_k[c] = Pack(0.0);
         for (int row = 0; row < rows_per_component; ++row)
           for (int x = 0; x < block; ++x)
-            u_k[first_dof + row * block + x] =
-                Pack::load_unaligned(u + row * stride + (pack * block + x) * Pack::size);
+            u_k[first_dof + row * block + x] = Pack::load_unaligned(u + row * stride + (pack * block + x) * Pack::size);
         const auto f = terms.force(u_k);
         const Pack scale = Pack::load_unaligned(fitting_->padded_scale_.data() + pack * Pack::size);
         for (int c = 0; c < local; ++c)
@@ -268,11 +265,7 @@ class ForceFitting {
 
   ForceFitting(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace,
                std::shared_ptr<const Matrix> metric, const Matrix& Q, Matrix F)
-      : model_(std::move(model)),
-        subspace_(std::move(subspace)),
-        metric_(std::move(metric)),
-        Q_(Q),
-        F_(std::move(F)) {
+      : model_(std::move(model)), subspace_(std::move(subspace)), metric_(std::move(metric)), Q_(Q), F_(std::move(F)) {
     require_size("metric.rows()", metric_->rows(), subspace_->dim());
     require_size("metric.cols()", metric_->cols(), subspace_->dim());
     require(Q.cols() > 0, "there are no training poses");
@@ -287,8 +280,7 @@ class ForceFitting {
                          ": the force is not finite (an inverted element of a material that is "
                          "undefined there?); choose smaller amplitudes, or shrink or redraw such poses");
       if (norm <= 1e-10 * largest)  // only rounding is left of a force that a rigid motion does not have
-        throw InputError("pose " + std::to_string(t) +
-                         ": there is no force, expected a pose that deforms the object");
+        throw InputError("pose " + std::to_string(t) + ": there is no force, expected a pose that deforms the object");
       scale_[t] = 1 / norm;
     }
     b_.resize(LF.size());
@@ -342,8 +334,7 @@ class ForceFitting {
       parallel_ranges(m, 64, [&](Index begin, Index end) {
         RowMatrix E((end - begin) * rows_per_component, subspace_->num_fields());
         for (Index i = begin; i < end; ++i)
-          E.middleRows((i - begin) * rows_per_component, rows_per_component) =
-              component_rows(*model_, *subspace_, i);
+          E.middleRows((i - begin) * rows_per_component, rows_per_component) = component_rows(*model_, *subspace_, i);
         const RowMatrix NE = apply_metric(E);
         for (Index i = begin; i < end; ++i)
           DND[i] = row_products(E.middleRows((i - begin) * rows_per_component, rows_per_component),
@@ -360,8 +351,7 @@ class ForceFitting {
       parallel_ranges(m, 2048, [&](Index begin, Index end) {
         static const LocalMatrix<local> none = LocalMatrix<local>::Zero();
         for (Index i = begin; i < end; ++i) {
-          Local<Model::local_dofs, Pack> f =
-              TermPack<Model>(model_, i).force(gather_poses(*model_, i, u.data()));
+          Local<Model::local_dofs, Pack> f = TermPack<Model>(model_, i).force(gather_poses(*model_, i, u.data()));
           if (norms) {
             f *= scale;
             sums[i] += body(DND[i], f, f);

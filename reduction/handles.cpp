@@ -32,7 +32,7 @@ RigidMotion RigidMotion::from(const Eigen::Matrix4d& matrix) {
 
 RigidMotion RigidMotion::part(double s, const Point& centre) const {
   const Eigen::AngleAxisd turn(rotation);
-  const Point moved = s * ((*this)(centre) - centre);
+  const Point moved = s * ((*this)(centre)-centre);
   return RigidMotion::turn(turn.axis(), s * turn.angle(), centre, moved);
 }
 

@@ -52,8 +52,7 @@ struct JoinedBasis {
   Second second;
 
   template <typename System>
-  JoinedSubspace<std::invoke_result_t<const First&, const System&>,
-                 std::invoke_result_t<const Second&, const System&>>
+  JoinedSubspace<std::invoke_result_t<const First&, const System&>, std::invoke_result_t<const Second&, const System&>>
   operator()(const System& system) const {
     return join(first(system), second(system), system.nodal_mass());
   }

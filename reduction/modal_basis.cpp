@@ -5,22 +5,20 @@
 
 namespace supple {
 
-VibrationModes vibration_modes(const SparseMatrix& K, const Vector& mass, const NodeNumbering& numbering,
-                               int node_dim, std::span<const Index> stencils, Index stencil_size,
-                               const Points& rest_positions, const ModeOptions& options) {
+VibrationModes vibration_modes(const SparseMatrix& K, const Vector& mass, const NodeNumbering& numbering, int node_dim,
+                               std::span<const Index> stencils, Index stencil_size, const Points& rest_positions,
+                               const ModeOptions& options) {
   VibrationModes result;
   result.components = find_free_components(stencils, stencil_size, numbering);
   const Index n = numbering.num_nodes();
   if (rest_positions.rows() != n || node_dim != 3) result.components.free.clear();
   result.num_rigid = result.components.num_rigid_modes();
   const Index num_flexible = options.num_modes - result.num_rigid;
-  require(options.num_modes >= 1,
-          "number of modes is " + std::to_string(options.num_modes) + ", expected at least 1");
+  require(options.num_modes >= 1, "number of modes is " + std::to_string(options.num_modes) + ", expected at least 1");
   require(num_flexible >= 1, "the object has " + std::to_string(result.num_rigid) + " rigid motions (" +
                                  std::to_string(result.components.free.size()) +
-                                 " parts that nothing holds), so at least " +
-                                 std::to_string(result.num_rigid + 1) + " modes are needed, not " +
-                                 std::to_string(options.num_modes));
+                                 " parts that nothing holds), so at least " + std::to_string(result.num_rigid + 1) +
+                                 " modes are needed, not " + std::to_string(options.num_modes));
   require(options.num_modes <= mass.size(), "number of modes is " + std::to_string(options.num_modes) +
                                                 ", but the system has only " + std::to_string(mass.size()) +
                                                 " unknowns");
@@ -35,11 +33,9 @@ VibrationModes vibration_modes(const SparseMatrix& K, const Vector& mass, const 
     };
     rigid = mass_orthonormalize(over_unknowns(all), mass).W;
   }
-  const EigenPairs pairs = smallest_eigenpairs(K, mass, rigid,
-                                               {.num_modes = num_flexible,
-                                                .tolerance = options.tolerance,
-                                                .seed = options.seed,
-                                                .progress = options.progress});
+  const EigenPairs pairs = smallest_eigenpairs(
+      K, mass, rigid,
+      {.num_modes = num_flexible, .tolerance = options.tolerance, .seed = options.seed, .progress = options.progress});
   if (pairs.report.status != Status::Converged)
     throw SolverError("vibration modes: only " + std::to_string(pairs.omega_squared.size()) + " of " +
                       std::to_string(num_flexible) + " pairs found, largest residual " +

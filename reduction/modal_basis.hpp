@@ -29,9 +29,9 @@ struct ModeOptions {
 /// \param rest_positions  n × 3; with no rows, rigid modes are not known beforehand and have to be found.
 /// \throws SolverError when the eigensolver does not converge; std::invalid_argument for more modes than
 /// unknowns.
-VibrationModes vibration_modes(const SparseMatrix& K, const Vector& mass, const NodeNumbering& numbering,
-                               int node_dim, std::span<const Index> stencils, Index stencil_size,
-                               const Points& rest_positions, const ModeOptions& options);
+VibrationModes vibration_modes(const SparseMatrix& K, const Vector& mass, const NodeNumbering& numbering, int node_dim,
+                               std::span<const Index> stencils, Index stencil_size, const Points& rest_positions,
+                               const ModeOptions& options);
 
 template <typename System>
 VibrationModes vibration_modes(const System& system, const ModeOptions& options) {
@@ -64,8 +64,7 @@ struct ModalBasis {
 NodalBasis extend_modes(const VibrationModes& modes, const Points& rest_positions, const Vector& nodal_mass);
 
 struct ExtendedModalBasis {
-  Index num_modes =
-      15;  ///< r, rigid ones included; 15 to 20 in the paper. More for motions with finer detail
+  Index num_modes = 15;     ///< r, rigid ones included; 15 to 20 in the paper. More for motions with finer detail
   double tolerance = 1e-8;  ///< of the modes
   std::uint64_t seed = 1;
   Progress progress = {};

@@ -65,12 +65,10 @@ class StaticResponse {
     return Y;
   }
   void remove_loads(Matrix& B) const {
-    if (without_energy_.cols() > 0)
-      B -= mass_.asDiagonal() * (without_energy_ * (without_energy_.transpose() * B));
+    if (without_energy_.cols() > 0) B -= mass_.asDiagonal() * (without_energy_ * (without_energy_.transpose() * B));
   }
   void remove_motions(Matrix& X) const {
-    if (without_energy_.cols() > 0)
-      X -= without_energy_ * (without_energy_.transpose() * (mass_.asDiagonal() * X));
+    if (without_energy_.cols() > 0) X -= without_energy_ * (without_energy_.transpose() * (mass_.asDiagonal() * X));
   }
 
   const SparseMatrix& K_;
@@ -82,15 +80,14 @@ class StaticResponse {
 /// Leading modes without energy: rigid ones and hinges.
 Index num_without_energy(const VibrationModes& modes) {
   Index count = modes.num_rigid;
-  while (count < modes.omega.size() && modes.omega[count] <= 1e-6 * modes.omega[modes.omega.size() - 1])
-    ++count;
+  while (count < modes.omega.size() && modes.omega[count] <= 1e-6 * modes.omega[modes.omega.size() - 1]) ++count;
   return count;
 }
 
 }  // namespace
 
-ModalDerivativeVectors modal_derivatives(const RestState& object, const VibrationModes& modes,
-                                         double tolerance, const Progress& progress) {
+ModalDerivativeVectors modal_derivatives(const RestState& object, const VibrationModes& modes, double tolerance,
+                                         const Progress& progress) {
   require_size("modes.vectors", modes.vectors.rows(), 3 * object.numbering.num_nodes());
   const Index first = num_without_energy(modes), r = modes.vectors.cols() - first;
   require(r > 0, "modal derivatives: no mode has energy");
@@ -123,8 +120,7 @@ ModalDerivativeVectors modal_derivatives(const RestState& object, const Vibratio
     const auto [theta, residual] = respond.solve(std::move(loads), tolerance);
     result.residual = std::max(result.residual, residual);
     result.vectors.middleCols(begin, theta.cols()) = object.expand(theta);
-    tell(progress, "modal derivatives",
-         static_cast<double>(begin + theta.cols()) / static_cast<double>(count));
+    tell(progress, "modal derivatives", static_cast<double>(begin + theta.cols()) / static_cast<double>(count));
   }
   if (!(result.residual <= std::max(1e-3, tolerance)))
     throw SolverError("modal derivatives: the static responses have a relative residual of " +
@@ -174,8 +170,7 @@ DenseBasis ModalDerivatives::build(const RestState& object) const {
   const Vector lambda = modes.omega.cwiseAbs2();
   const double lambda_1 = lambda[derivatives.pairs[0][0]];
   for (Index k = 0; k < count; ++k)
-    coordinates.col(k) *=
-        lambda_1 * lambda_1 / (lambda[derivatives.pairs[k][0]] * lambda[derivatives.pairs[k][1]]);
+    coordinates.col(k) *= lambda_1 * lambda_1 / (lambda[derivatives.pairs[k][0]] * lambda[derivatives.pairs[k][1]]);
   const Eigen::JacobiSVD<Matrix> svd(coordinates, Eigen::ComputeThinU);
   report.singular_values = svd.singularValues();
   const Index wanted = dimension == 0 ? added.cols() : std::min(dimension - kept, added.cols());

@@ -21,8 +21,8 @@ struct ModalDerivativeVectors {
 /// The derivatives of all modes with energy. One factorisation, r (r + 1) / 2 solves with refinement and
 /// 2 r (r + 1) evaluations of the force; equal bits for any num_threads().
 /// \throws SolverError if K is not positive semi-definite, or a residual cannot be made small.
-ModalDerivativeVectors modal_derivatives(const RestState& object, const VibrationModes& modes,
-                                         double tolerance = 1e-8, const Progress& progress = {});
+ModalDerivativeVectors modal_derivatives(const RestState& object, const VibrationModes& modes, double tolerance = 1e-8,
+                                         const Progress& progress = {});
 
 /// Linear modes and their modal derivatives (Idelsohn & Cardona 1985; Barbič & James 2005): r modes give up
 /// to r (r + 3) / 2 dimensions, free parts six more each.

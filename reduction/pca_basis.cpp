@@ -12,8 +12,7 @@ DenseBasis PcaBasis::build(const RestState& object) const {
   require(snapshots.cols() > 0, "there are no snapshots");
   require(snapshots.allFinite(), "a snapshot has an entry that is not finite");
   require(dimension >= 0, "the dimension is " + std::to_string(dimension) + ", expected at least 0");
-  require(energy > 0 && energy <= 1,
-          "the share of energy is " + std::to_string(energy) + ", expected (0, 1]");
+  require(energy > 0 && energy <= 1, "the share of energy is " + std::to_string(energy) + ", expected (0, 1]");
   for (const Index v : object.numbering.fixed_nodes())
     require(snapshots.middleRows(node_dim * v, node_dim).isZero(0),
             "a snapshot moves node " + std::to_string(v) + ", which is fixed");

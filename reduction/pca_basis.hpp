@@ -13,8 +13,7 @@ namespace supple {
 struct PcaBasis {
   Matrix snapshots;     ///< n · node_dim × T displacements (temperatures) of all nodes [m] ([K]), zero at fixed nodes
   Index dimension = 0;  ///< 0: no bound
-  double energy =
-      1;  ///< share of Σ_t ‖u_t‖²_M that the subspace has to hold, in (0, 1]; 0.9999 leaves 1 % rms
+  double energy = 1;    ///< share of Σ_t ‖u_t‖²_M that the subspace has to hold, in (0, 1]; 0.9999 leaves 1 % rms
 
   /// \return report.singular_values are all min(n · node_dim, T) [m √kg]; `dropped` counts those that are zero.
   /// \throws std::invalid_argument if snapshots do not fit the system, are not finite or all zero, or move

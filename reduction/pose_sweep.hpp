@@ -66,16 +66,14 @@ RowMatrix component_rows(const Model& model, const S& subspace, Index i) {
     E.middleRows(a * rows_per_node, rows_per_node) =
         subspace.W.middleRows(nodes[first_node + a] * rows_per_node, rows_per_node);
     if constexpr (first_node > 0)
-      E.middleRows(a * rows_per_node, rows_per_node) -=
-          subspace.W.middleRows(nodes[0] * rows_per_node, rows_per_node);
+      E.middleRows(a * rows_per_node, rows_per_node) -= subspace.W.middleRows(nodes[0] * rows_per_node, rows_per_node);
   }
   return E;
 }
 
 /// fields = U q for a pack of eight poses: W times p × (block · 8).
 template <Subspace S>
-void reconstruct_poses(const S& subspace, const RowMatrix& packed, Index pack, Index begin, Index end,
-                       double* fields) {
+void reconstruct_poses(const S& subspace, const RowMatrix& packed, Index pack, Index begin, Index end, double* fields) {
   constexpr Index width = S::block * Pack::size;
   Eigen::Map<RowMatrix, Eigen::Aligned64>(fields + begin * width, end - begin, width).noalias() =
       subspace.W.middleRows(begin, end - begin) * packed.middleCols(pack * width, width);
@@ -106,11 +104,9 @@ Matrix reduced_forces(const std::shared_ptr<const Model>& model, const S& subspa
         }
     }
     result.middleCols(pack * width, width).noalias() =
-        subspace.W.transpose() *
-        Eigen::Map<const RowMatrix, Eigen::Aligned64>(f.data(), subspace.W.rows(), width);
+        subspace.W.transpose() * Eigen::Map<const RowMatrix, Eigen::Aligned64>(f.data(), subspace.W.rows(), width);
     ++done;
-    if (tell_share && std::this_thread::get_id() == main_thread)
-      tell_share(static_cast<double>(done) / num_packs);
+    if (tell_share && std::this_thread::get_id() == main_thread) tell_share(static_cast<double>(done) / num_packs);
   });
   return unpack_poses<S::block>(result, Q.cols());
 }

@@ -18,20 +18,20 @@ namespace supple {
 /// held; a force along the slowest flexible mode of one that is free, which would fly off without deforming.
 struct PullScene {
   std::string name;
-  double target = 0.25;              ///< largest displacement of a node, as a share of the object's diagonal
-  double ramp = 0;                   ///< steps over which the pull grows; 0: it is there at once
-  double damping = 0;                ///< ratio of the slowest mode, half by α M and half by β K
+  double target = 0.25;             ///< largest displacement of a node, as a share of the object's diagonal
+  double ramp = 0;                  ///< steps over which the pull grows; 0: it is there at once
+  double damping = 0;               ///< ratio of the slowest mode, half by α M and half by β K
   Point direction = {0.5, 0.1, 1};  ///< of the acceleration
   int steps = 120;
 };
 
 /// One motion, a column for each step, and what its steps took.
 struct PulledMotion {
-  Matrix q;                                ///< d × steps
-  std::vector<double> seconds;             ///< by step
-  double iterations = 0, refreshes = 0;    ///< means over the steps
-  double worst_residual = 0;               ///< relative, over the steps
-  int missed_steps = 0;                    ///< that did not reach the tolerance
+  Matrix q;                              ///< d × steps
+  std::vector<double> seconds;           ///< by step
+  double iterations = 0, refreshes = 0;  ///< means over the steps
+  double worst_residual = 0;             ///< relative, over the steps
+  int missed_steps = 0;                  ///< that did not reach the tolerance
 };
 
 /// Pulls one object with any of its selections. A reference costs O(m) a force; compute it once.
@@ -48,9 +48,8 @@ class PullTest {
     const Vector compliance = modes.omega.tail(modes.omega.size() - modes.num_zero).array().square().inverse();
     const auto Phi = modes.Phi.rightCols(compliance.size());  // modes with energy
     for (const PullScene& scene : scenes_) {
-      Vector& pull = pulls_.emplace_back(modes.num_zero > 0
-                                             ? Vector(Phi.col(0))
-                                             : sample.project({.gravity = scene.direction.normalized()}).force);
+      Vector& pull = pulls_.emplace_back(
+          modes.num_zero > 0 ? Vector(Phi.col(0)) : sample.project({.gravity = scene.direction.normalized()}).force);
       pull *= scene.target / reach(sample, Phi * compliance.cwiseProduct(Phi.transpose() * pull));
       for (int pass = 0; pass < 3; ++pass)  // large motions are not proportional to the pull
         pull *= scene.target / reach(sample, move(sample, pulls_.size() - 1).q);
@@ -60,8 +59,7 @@ class PullTest {
   const std::vector<PullScene>& scenes() const { return scenes_; }
   double step() const { return 2 * std::numbers::pi / omega_ / 60; }  ///< [s]
 
-  PulledMotion move(const System& system, std::size_t scene,
-                    NonlinearSolver solver = NonlinearSolver::Bfgs) const;
+  PulledMotion move(const System& system, std::size_t scene, NonlinearSolver solver = NonlinearSolver::Bfgs) const;
   /// Motions in all scenes, by all threads.
   std::vector<PulledMotion> move(const System& system) const {
     std::vector<PulledMotion> motions(scenes_.size());

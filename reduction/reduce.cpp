@@ -13,8 +13,7 @@ Vector softest_eigenvalues(const Matrix& stiffness, Index first, Index count) {
 }
 
 void check(const ReduceOptions& options) {
-  require(options.points >= 1,
-          "number of points is " + std::to_string(options.points) + ", expected at least 1");
+  require(options.points >= 1, "number of points is " + std::to_string(options.points) + ", expected at least 1");
   require(options.target_error >= 0, "target error is negative, expected 0 or more");
   require(options.held_out_poses >= 0, "number of held-out poses is negative, expected 0 or more");
   check(options.subspace_choice());
@@ -25,9 +24,9 @@ void check(const ReduceOptions& options) {
 
 InvertedPoses inverted_rule(std::string_view law, std::optional<InvertedPoses> asked) {
   const bool finite_energy = law == shell_law || material_law(law).finite_when_inverted;
-  require(finite_energy || asked != InvertedPoses::Keep,
-          "poses with inverted tets cannot be kept: the energy of " + std::string(law) +
-              " is infinite there; expected shrink or redraw");
+  require(finite_energy || asked != InvertedPoses::Keep, "poses with inverted tets cannot be kept: the energy of " +
+                                                             std::string(law) +
+                                                             " is infinite there; expected shrink or redraw");
   return asked.value_or(finite_energy ? InvertedPoses::Keep : InvertedPoses::Shrink);
 }
 
@@ -70,7 +69,8 @@ WorkingComponents working_components(const Selection& selection, const std::stri
   if ((selection.weights.array() < 0).any())
     throw SolverError("selector '" + selector +
                       "' gave negative weights, with which a reduced object may be unstable; choose one "
-                      "that keeps them positive, such as " + known_selectors().front());
+                      "that keeps them positive, such as " +
+                      known_selectors().front());
   WorkingComponents result;
   std::vector<double> weights;
   for (Index k = 0; k < selection.size(); ++k)

@@ -47,7 +47,7 @@ struct Training {
   std::shared_ptr<const S> subspace;
   Matrix rest_stiffness;  ///< UᵀK(0)U, d × d
   ReducedModes modes;
-  Fitting fitting;                                    ///< on the training poses
+  Fitting fitting;                                   ///< on the training poses
   std::vector<std::pair<double, Fitting>> held_out;  ///< on fresh poses at these shares of the largest amplitude
 
   /// The reduced system of a selection.
@@ -97,32 +97,29 @@ Training<Model, S> train(const ObjectTraits& object, std::shared_ptr<const FullS
   };
   const Matrix Q = stage("training poses", [&](auto) -> Matrix {
     const bool given = options.given_poses.size() > 0;
-    TrainingPoses poses =
-        given ? treat_inverted(system->shared_model(), *subspace,
-                               poses_in_subspace(*subspace, system->nodal_mass(), options.given_poses),
-                               *pose_options.inverted)
-              : sample(pose_options);
+    TrainingPoses poses = given
+                              ? treat_inverted(system->shared_model(), *subspace,
+                                               poses_in_subspace(*subspace, system->nodal_mass(), options.given_poses),
+                                               *pose_options.inverted)
+                              : sample(pose_options);
     report.inverted_poses = poses.inverted;
     report.redrawn_poses = poses.redrawn;
     report.shrunk_poses = poses.shrunk;
     if (poses.inverted > 0)
       report.notes.push_back(std::to_string(poses.inverted) + " of " + std::to_string(poses.Q.cols()) +
                              " training poses had inverted " + object.component_name + " (" +
-                             std::to_string(poses.inverted_components) + " in all); " +
-                             std::to_string(poses.redrawn) + " draws were redrawn, " +
-                             std::to_string(poses.shrunk) + " poses shrunk");
+                             std::to_string(poses.inverted_components) + " in all); " + std::to_string(poses.redrawn) +
+                             " draws were redrawn, " + std::to_string(poses.shrunk) + " poses shrunk");
     return std::move(poses.Q);
   });
   report.poses = Q.cols();
   const Matrix metric = force_metric(options.norm, modes);
-  Fitting fitting = stage("training forces", [&](auto share) {
-    return Fitting(system->shared_model(), subspace, metric, Q, share);
-  });
+  Fitting fitting =
+      stage("training forces", [&](auto share) { return Fitting(system->shared_model(), subspace, metric, Q, share); });
   std::vector<std::pair<double, Fitting>> held_out;
   if (options.held_out_poses > 0)
     stage("held-out forces", [&](auto share) {
-      const double largest =
-          *std::max_element(pose_options.amplitudes.begin(), pose_options.amplitudes.end());
+      const double largest = *std::max_element(pose_options.amplitudes.begin(), pose_options.amplitudes.end());
       for (const double part : {1.0, 0.3, 0.1}) {
         PoseOptions some = pose_options;
         some.count = options.held_out_poses;

@@ -33,7 +33,8 @@ struct Reduction {
 /// \throws as reduce() of a Body.
 template <ForceModel Model, Subspace S, typename Selector = NnSp>
 Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std::shared_ptr<const S> subspace,
-                           const Selector& select = {}, const ReduceOptions& options = {}, const Progress& progress = {}) {
+                           const Selector& select = {}, const ReduceOptions& options = {},
+                           const Progress& progress = {}) {
   static_assert(explain_subset_selector<Selector>());
   check(options);
   const Stopwatch total;

@@ -44,8 +44,7 @@ constexpr const char *component_key = "component", *gauss_point = "gauss-point";
 
 template <typename Mesh>
 void add_body(TensorFileWriter& file, const SolidOf<Mesh>& solid) {
-  for (const auto& [tag, name] : solid.mesh.region_names)
-    file.metadata["region." + std::to_string(tag)] = name;
+  for (const auto& [tag, name] : solid.mesh.region_names) file.metadata["region." + std::to_string(tag)] = name;
   if (!std::same_as<Mesh, TetMesh> && solid.component == SolidComponent::GaussPoint)
     file.metadata[component_key] = gauss_point;
   file.add(arrays<Mesh>.cells, narrow(cells_of(solid.mesh)));
@@ -78,7 +77,8 @@ class ModelReader {
   int whole_number(const std::string& key, const std::string& text) const {
     int value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) throw fail(key + ": '" + text + "' is not a whole number");
+    if (error != std::errc() || end != text.data() + text.size())
+      throw fail(key + ": '" + text + "' is not a whole number");
     return value;
   }
 
@@ -184,7 +184,10 @@ ReducedModes reduced_modes(const ReducedModel& model) {
 
 void save_model(const std::filesystem::path& path, const ReducedModel& model) {
   TensorFileWriter file;
-  file.metadata = {{"format", format_name}, {"format_version", format_version}, {"material.law", std::string(law(model.body))}, {"subspace.name", model.subspace_name}};
+  file.metadata = {{"format", format_name},
+                   {"format_version", format_version},
+                   {"material.law", std::string(law(model.body))},
+                   {"subspace.name", model.subspace_name}};
   for (const auto& [key, text] : model.provenance) file.metadata["provenance." + key] = text;
   file.add("mesh.nodes", node_positions(model.body));
   std::visit([&](const auto& body) { add_body(file, body); }, model.body);
@@ -241,7 +244,7 @@ ReducedModel load_model(const std::filesystem::path& path) {
     basis->report.rigid_modes = in.whole_number("subspace.rigid_modes", file.metadata("subspace.rigid_modes"));
     if (basis->report.rigid_modes < 0 || basis->report.rigid_modes > basis->report.omega.size())
       throw in.fail("subspace.rigid_modes is " + std::to_string(basis->report.rigid_modes) + ", expected 0 to " +
-                 std::to_string(basis->report.omega.size()));
+                    std::to_string(basis->report.omega.size()));
     model.subspace = std::shared_ptr<const KroneckerBasis<block>>(std::move(basis));
   };
   model.subspace_name = file.metadata("subspace.name");

@@ -15,9 +15,9 @@ struct ReducedModel {
   Body body;
   std::variant<std::shared_ptr<const NodalBasis>, std::shared_ptr<const DenseBasis>> subspace;
   std::string subspace_name = "extended";  ///< see SubspaceChoice
-  std::vector<Index> indices;  ///< selected components of its force model, ascending
-  Vector weights;              ///< of the selected components, > 0
-  Matrix rest_stiffness;       ///< UᵀK(0)U, exact, d × d
+  std::vector<Index> indices;              ///< selected components of its force model, ascending
+  Vector weights;                          ///< of the selected components, > 0
+  Matrix rest_stiffness;                   ///< UᵀK(0)U, exact, d × d
   /// How it was made: options, seed, version, errors. Free text; the file keeps it.
   std::map<std::string, std::string> provenance;
 

@@ -6,8 +6,7 @@ namespace supple {
 
 ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index> num_rigid) {
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(reduced_stiffness);
-  if (eigen.info() != Eigen::Success)
-    throw SolverError("eigenvalues of the reduced stiffness did not converge");
+  if (eigen.info() != Eigen::Success) throw SolverError("eigenvalues of the reduced stiffness did not converge");
   ReducedModes modes{eigen.eigenvalues().cwiseMax(0).cwiseSqrt(), eigen.eigenvectors(), num_rigid.value_or(0)};
   const double largest = modes.omega.size() > 0 ? modes.omega[modes.omega.size() - 1] : 0;
   if (!num_rigid)

@@ -47,10 +47,12 @@ Matrix project_stiffness(const S& subspace, const System& system, const SparseMa
   parallel_for(pieces, [&](Index piece) {
     constexpr Index at_once = 192 * block;  // a multiple of block, so that rows of K come in whole blocks
     Matrix& sum = partial[piece] = Matrix::Zero(p * block, p * block);  // block (x, y) of p × p: fields a, b
-    const Index blocks = dim / block, begin = blocks * piece / pieces * block, end = blocks * (piece + 1) / pieces * block;
+    const Index blocks = dim / block, begin = blocks * piece / pieces * block,
+                end = blocks * (piece + 1) / pieces * block;
     for (Index first = begin; first < end; first += at_once) {
       const Index count = std::min(at_once, end - first);
-      RowMatrix W(count / block, p), KU = RowMatrix::Zero(count, block * p);  // row i: Σ_j K_ij W_j, sorted by axis of j
+      RowMatrix W(count / block, p),
+          KU = RowMatrix::Zero(count, block * p);  // row i: Σ_j K_ij W_j, sorted by axis of j
       for (Index r = 0; r < count / block; ++r) W.row(r) = subspace.W.row(full_dof(first + r * block) / block);
       for (Index i = 0; i < count; ++i)
         for (SparseMatrix::InnerIterator it(K, first + i); it; ++it) {  // a column of K is a row
@@ -58,9 +60,9 @@ Matrix project_stiffness(const S& subspace, const System& system, const SparseMa
           KU.row(i).segment(dof % block * p, p) += it.value() * subspace.W.row(dof / block);
         }
       for (int x = 0; x < block; ++x)
-        sum.middleRows(x * p, p).noalias() +=
-            W.transpose() * Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>>(KU.data() + x * KU.cols(), count / block, KU.cols(),
-                                                                                Eigen::OuterStride<>(block * KU.cols()));
+        sum.middleRows(x * p, p).noalias() += W.transpose() * Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>>(
+                                                                  KU.data() + x * KU.cols(), count / block, KU.cols(),
+                                                                  Eigen::OuterStride<>(block * KU.cols()));
     }
   });
   Matrix sum = Matrix::Zero(p * block, p * block), result(p * block, p * block);

@@ -34,9 +34,8 @@ class ReducedSystem {
   /// \param indices, weights  the selection; weights > 0.
   /// \param rest_stiffness    UᵀK(0)U, exact, d × d: what Rayleigh damping uses.
   /// \param nodal_mass        n [kg], for gravity in ℝ³.
-  ReducedSystem(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace,
-                std::span<const Index> indices, VectorIn weights, Matrix rest_stiffness,
-                const Vector& nodal_mass)
+  ReducedSystem(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace, std::span<const Index> indices,
+                VectorIn weights, Matrix rest_stiffness, const Vector& nodal_mass)
       : subspace_(std::move(subspace)),
         mass_(Vector::Ones(subspace_->dim())),
         rest_stiffness_(std::move(rest_stiffness)) {
@@ -83,17 +82,14 @@ class ReducedSystem {
 
   Index dim() const { return subspace_->dim(); }
   const S& subspace() const { return *subspace_; }
-  Index num_components() const {
-    return static_cast<Index>(terms_.size()) * Pack::size;
-  }                                                                 ///< rounded up to packs
-  const Vector& mass() const { return mass_; }                      ///< ones: U is M-orthonormal
+  Index num_components() const { return static_cast<Index>(terms_.size()) * Pack::size; }  ///< rounded up to packs
+  const Vector& mass() const { return mass_; }                                             ///< ones: U is M-orthonormal
   const Matrix& rest_stiffness() const { return rest_stiffness_; }  ///< exact, not from the selection
 
   double energy(VectorIn q) const requires PotentialModel<Model> {
     require_size("q", q.size(), dim());
     Pack sum(0.0);
-    for (std::size_t p = 0; p < terms_.size(); ++p)
-      sum += weights_[p] * terms_[p].energy(gather(p, q.data()));
+    for (std::size_t p = 0; p < terms_.size(); ++p) sum += weights_[p] * terms_[p].energy(gather(p, q.data()));
     return sum.sum();
   }
 
@@ -134,8 +130,7 @@ class ReducedSystem {
     for (Index first = 0; first < static_cast<Index>(terms_.size()); first += packs_at_once) {
       const Index count = std::min<Index>(packs_at_once, static_cast<Index>(terms_.size()) - first);
       for (Index c = 0; c < count; ++c) {
-        const LocalMatrix<Model::local_dofs, Pack> K_c =
-            terms_[first + c].stiffness(gather(first + c, q.data()));
+        const LocalMatrix<Model::local_dofs, Pack> K_c = terms_[first + c].stiffness(gather(first + c, q.data()));
         const Pack weight = weights_[first + c];
         LocalMatrix<local, Pack> weighted;
         for (int j = 0; j < local; ++j)

@@ -20,7 +20,7 @@ struct RestState {
   const NodeNumbering& numbering;
   std::span<const Index> stencils;
   Index stencil_size;
-  Index node_dim;  ///< unknowns of a node
+  Index node_dim;                                      ///< unknowns of a node
   std::function<void(VectorIn u, VectorOut f)> force;  ///< over the free unknowns; safe from several threads
 
   /// Columns over the free unknowns → over all nodes, n · node_dim × k, zero where fixed.
@@ -44,10 +44,14 @@ struct RestState {
 template <typename System>
 RestState rest_state(const System& system) {
   using Model = std::remove_cvref_t<decltype(system.model())>;
-  return {system.rest_stiffness(), system.mass(),
-          system.nodal_mass(),     system.model().rest_positions(),
-          system.numbering(),      system.stencils(),
-          Model::stencil_size,     System::node_dim,
+  return {system.rest_stiffness(),
+          system.mass(),
+          system.nodal_mass(),
+          system.model().rest_positions(),
+          system.numbering(),
+          system.stencils(),
+          Model::stencil_size,
+          System::node_dim,
           [&system](VectorIn u, VectorOut f) { system.force(u, f); }};
 }
 

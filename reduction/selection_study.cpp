@@ -41,7 +41,8 @@ struct SelectionStudy::Interface {
 
 template <typename AnyTraining>
 struct SelectionStudy::Model final : Interface {
-  using Pulls = PullTest<typename AnyTraining::Model, std::remove_const_t<typename decltype(AnyTraining::subspace)::element_type>>;
+  using Pulls = PullTest<typename AnyTraining::Model,
+                         std::remove_const_t<typename decltype(AnyTraining::subspace)::element_type>>;
 
   Model(AnyTraining&& some, double diagonal, std::vector<PullScene> pulled, Stages& stage)
       : training(std::move(some)), any(training.fitting) {
@@ -50,8 +51,7 @@ struct SelectionStudy::Model final : Interface {
     stage("reference motions", [&](auto) {
       const Index m = training.fitting.cols();
       const Selection rough = NnSp{.max_iterations = 5}(any, std::min(m, 2 * training.fitting.poses().rows()));
-      pulls.emplace(std::move(pulled), training.modes, diagonal,
-                    training.reduced_system(rough.indices, rough.weights));
+      pulls.emplace(std::move(pulled), training.modes, diagonal, training.reduced_system(rough.indices, rough.weights));
       std::vector<Index> all(m);
       std::iota(all.begin(), all.end(), Index{0});
       const auto unfitted = training.reduced_system(all, Vector::Ones(m));
@@ -59,8 +59,9 @@ struct SelectionStudy::Model final : Interface {
       for (std::size_t k = 0; k < references.size(); ++k) {
         this->reached.push_back(pulls->reach(unfitted, references[k].q));
         if (references[k].missed_steps > 0)
-          stage.report().notes.push_back(std::to_string(references[k].missed_steps) + " steps of the reference motion '" +
-                                         pulls->scenes()[k].name + "' missed the tolerance");
+          stage.report().notes.push_back(std::to_string(references[k].missed_steps) +
+                                         " steps of the reference motion '" + pulls->scenes()[k].name +
+                                         "' missed the tolerance");
       }
     });
     this->scenes = pulls->scenes();
@@ -127,13 +128,23 @@ SelectionStudy::~SelectionStudy() = default;
 SelectionStudy::SelectionStudy(SelectionStudy&&) noexcept = default;
 SelectionStudy& SelectionStudy::operator=(SelectionStudy&&) noexcept = default;
 
-const AnyProblem& SelectionStudy::problem() const { return self_->problem(); }
+const AnyProblem& SelectionStudy::problem() const {
+  return self_->problem();
+}
 double SelectionStudy::held_out_error(const std::vector<Index>& indices, VectorIn weights) const {
   return self_->held_out_error(indices, weights);
 }
-SelectionMeasure SelectionStudy::measure(const Selection& selection) const { return self_->measure(selection); }
-const ReduceReport& SelectionStudy::report() const { return self_->report; }
-const std::vector<PullScene>& SelectionStudy::scenes() const { return self_->scenes; }
-const std::vector<double>& SelectionStudy::largest_displacements() const { return self_->reached; }
+SelectionMeasure SelectionStudy::measure(const Selection& selection) const {
+  return self_->measure(selection);
+}
+const ReduceReport& SelectionStudy::report() const {
+  return self_->report;
+}
+const std::vector<PullScene>& SelectionStudy::scenes() const {
+  return self_->scenes;
+}
+const std::vector<double>& SelectionStudy::largest_displacements() const {
+  return self_->reached;
+}
 
 }  // namespace supple

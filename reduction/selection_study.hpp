@@ -37,7 +37,7 @@ class SelectionStudy {
   double held_out_error(const std::vector<Index>& indices, VectorIn weights) const;
   SelectionMeasure measure(const Selection& selection) const;
 
-  const ReduceReport& report() const;                 ///< of the stages up to the training forces
+  const ReduceReport& report() const;  ///< of the stages up to the training forces
   const std::vector<PullScene>& scenes() const;
   const std::vector<double>& largest_displacements() const;  ///< reached by the reference in each scene
 

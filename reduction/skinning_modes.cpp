@@ -42,9 +42,8 @@ SkinningWeights SkinningModes::weights(const RestState& object) const {
   require(num_weights >= std::max<Index>(1, num_constant),
           "number of weights is " + std::to_string(num_weights) + ", expected at least " +
               std::to_string(std::max<Index>(1, num_constant)) + ": one for each part that nothing holds");
-  require(num_weights <= numbering.num_free(), "number of weights is " + std::to_string(num_weights) +
-                                                   ", but only " + std::to_string(numbering.num_free()) +
-                                                   " nodes are free");
+  require(num_weights <= numbering.num_free(), "number of weights is " + std::to_string(num_weights) + ", but only " +
+                                                   std::to_string(numbering.num_free()) + " nodes are free");
   const Vector mass = object.mass(Eigen::seqN(0, numbering.num_free(), 3));
   Matrix W(numbering.num_free(), num_weights);
   SkinningWeights result{{}, Vector::Zero(num_weights), Vector::Zero(num_weights)};

@@ -14,10 +14,10 @@ namespace supple {
 
 /// What the construction of a subspace has to say.
 struct SubspaceReport {
-  Vector omega;  ///< angular frequencies of the modes it was made from [rad/s], rigid ones first; may be none
-  Vector residuals;                ///< relative residuals of these modes, in the same order
-  Index rigid_modes = 0;           ///< how many of them are rigid motions
-  Index dropped = 0;               ///< linearly dependent vectors that were left out
+  Vector omega;           ///< angular frequencies of the modes it was made from [rad/s], rigid ones first; may be none
+  Vector residuals;       ///< relative residuals of these modes, in the same order
+  Index rigid_modes = 0;  ///< how many of them are rigid motions
+  Index dropped = 0;      ///< linearly dependent vectors that were left out
   std::vector<std::string> notes;  ///< what a user should know: missing or surplus rigid modes, …
   /// Of the principal component analysis that chose the columns, descending; none if there was none.
   Vector singular_values = {};
@@ -72,8 +72,7 @@ struct KroneckerBasis {
 
   /// result += scale · (row `dof` of U)ᵀ: what a unit force on one unknown of the mesh does.
   void add_row(Index dof, double scale, VectorOut result) const {
-    Eigen::Map<Fields>(result.data(), num_fields(), block).col(dof % block) +=
-        scale * W.row(dof / block).transpose();
+    Eigen::Map<Fields>(result.data(), num_fields(), block).col(dof % block) += scale * W.row(dof / block).transpose();
   }
   /// (U q) at one unknown of the mesh.
   double at(Index dof, VectorIn q) const {
@@ -90,9 +89,8 @@ struct KroneckerBasis {
   }
 
   /// A vector over fields, seen as num_fields × block.
-  using Fields =
-      std::conditional_t<block == 1, Matrix,
-                         Eigen::Matrix<double, Eigen::Dynamic, block == 1 ? 2 : block, Eigen::RowMajor>>;
+  using Fields = std::conditional_t<block == 1, Matrix,
+                                    Eigen::Matrix<double, Eigen::Dynamic, block == 1 ? 2 : block, Eigen::RowMajor>>;
 };
 
 using DenseBasis = KroneckerBasis<1>;

@@ -13,8 +13,7 @@ namespace {
 ThinQr householder_qr(MatrixIn A) {
   const Index k = std::min(A.rows(), A.cols());
   const Eigen::HouseholderQR<Matrix> qr(A);
-  return {qr.householderQ() * Matrix::Identity(A.rows(), k),
-          qr.matrixQR().topRows(k).triangularView<Eigen::Upper>()};
+  return {qr.householderQ() * Matrix::Identity(A.rows(), k), qr.matrixQR().topRows(k).triangularView<Eigen::Upper>()};
 }
 
 }  // namespace
@@ -33,9 +32,8 @@ ThinQr tall_qr(MatrixIn A) {
   });
   ThinQr result = tall_qr(stacked);
   Matrix Q(A.rows(), n);
-  parallel_for(pieces, [&](Index k) {
-    Q.middleRows(begin(k), count(k)).noalias() = local[k] * result.Q.middleRows(k * n, n);
-  });
+  parallel_for(pieces,
+               [&](Index k) { Q.middleRows(begin(k), count(k)).noalias() = local[k] * result.Q.middleRows(k * n, n); });
   result.Q = std::move(Q);
   return result;
 }

@@ -2,8 +2,7 @@
 
 namespace supple {
 
-PoseSampler::PoseSampler(const ReducedModes& modes, double omega_exponent, double total_mass)
-    : Phi_(modes.Phi) {
+PoseSampler::PoseSampler(const ReducedModes& modes, double omega_exponent, double total_mass) : Phi_(modes.Phi) {
   deviations_ = modes.positive_omega().array().pow(-omega_exponent);
   deviations_.head(modes.num_zero).setZero();
   deviations_ *= std::sqrt(total_mass) / deviations_.norm();

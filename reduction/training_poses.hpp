@@ -71,8 +71,8 @@ class PoseSampler {
 /// \param draw  another pose in place of pose t, for InvertedPoses::Redraw; without it such poses are shrunk.
 /// \throws SolverError if a pose stays inverted however small.
 template <ForceModel Model, Subspace S>
-TrainingPoses treat_inverted(const std::shared_ptr<const Model>& model, const S& subspace, Matrix Q,
-                             InvertedPoses rule, const std::function<Vector(Index t)>& draw = {}) {
+TrainingPoses treat_inverted(const std::shared_ptr<const Model>& model, const S& subspace, Matrix Q, InvertedPoses rule,
+                             const std::function<Vector(Index t)>& draw = {}) {
   TrainingPoses poses{.Q = std::move(Q)};
   std::vector<Index> bad;
   const std::vector<Index> inverted = count_inverted(model, subspace, poses.Q);
@@ -100,8 +100,7 @@ TrainingPoses treat_inverted(const std::shared_ptr<const Model>& model, const S&
   poses.shrunk = static_cast<Index>(bad.size());
   for (int attempt = 0; !bad.empty(); ++attempt) {
     if (attempt == 60)
-      throw SolverError("pose " + std::to_string(bad[0]) +
-                        " has inverted components however small it is made");
+      throw SolverError("pose " + std::to_string(bad[0]) + " has inverted components however small it is made");
     for (const Index t : bad) poses.Q.col(t) *= 0.75;
     bad = still_bad();
   }
@@ -112,11 +111,9 @@ TrainingPoses treat_inverted(const std::shared_ptr<const Model>& model, const S&
 /// \throws std::invalid_argument for options out of range; SolverError if a pose stays inverted however
 /// small.
 template <ForceModel Model, Subspace S>
-TrainingPoses sample_poses(const std::shared_ptr<const Model>& model, const S& subspace,
-                           const ReducedModes& modes, double total_mass, double diagonal,
-                           const PoseOptions& options) {
-  require(options.count >= 1,
-          "number of poses is " + std::to_string(options.count) + ", expected at least 1");
+TrainingPoses sample_poses(const std::shared_ptr<const Model>& model, const S& subspace, const ReducedModes& modes,
+                           double total_mass, double diagonal, const PoseOptions& options) {
+  require(options.count >= 1, "number of poses is " + std::to_string(options.count) + ", expected at least 1");
   require(!options.amplitudes.empty(), "no amplitude is given for the poses");
   for (const double a : options.amplitudes)
     require(std::isfinite(a) && a > 0, "amplitude of the poses is " + std::to_string(a) + ", expected > 0");

@@ -23,17 +23,13 @@ template <typename F>
 concept PassiveFactor = requires(F& factor, const F& f, const Indices& P, Index i, const Vector& x) {
   { f.cols() } -> std::convertible_to<Index>;
   { f.is_zero(i) } -> std::convertible_to<bool>;
-  {
-    factor.assign(P)
-    } -> std::convertible_to<bool>;  // starts anew with P; false, and empty: some depend on others
-  {
-    factor.append(P, i)
-    } -> std::convertible_to<bool>;  // adds column i behind P; false: depends on those, no change
-  factor.remove(i);                  // removes P's position i
-  { f.solve(P) } -> std::convertible_to<Vector>;        // minimiser on P, in its order
-  { f.gradient(P, x) } -> std::convertible_to<Vector>;  // g = Aᵀ(b − A x) for that minimiser x; all columns
-  { f.scale() } -> std::convertible_to<double>;         // g is measured relative to this
-  { f.rounding(x) } -> std::convertible_to<double>;     // of g
+  { factor.assign(P) } -> std::convertible_to<bool>;     // starts anew with P; false, and empty: some depend on others
+  { factor.append(P, i) } -> std::convertible_to<bool>;  // adds column i behind P; false: depends on those, no change
+  factor.remove(i);                                      // removes P's position i
+  { f.solve(P) } -> std::convertible_to<Vector>;         // minimiser on P, in its order
+  { f.gradient(P, x) } -> std::convertible_to<Vector>;   // g = Aᵀ(b − A x) for that minimiser x; all columns
+  { f.scale() } -> std::convertible_to<double>;          // g is measured relative to this
+  { f.rounding(x) } -> std::convertible_to<double>;      // of g
 };
 
 /// Minimises on a passive set of columns, which it exchanges until the others have a gradient that is not
@@ -181,9 +177,8 @@ class ActiveSet {
       Indices entering;
       for (Index i = 0; i < size(); ++i)
         if (wants_in(i, limit)) entering.push_back(i);
-      const auto violations =
-          static_cast<std::ptrdiff_t>(entering.size()) +
-          std::count_if(passive.begin(), passive.end(), [&](Index i) { return x[i] < 0; });
+      const auto violations = static_cast<std::ptrdiff_t>(entering.size()) +
+                              std::count_if(passive.begin(), passive.end(), [&](Index i) { return x[i] < 0; });
       if (violations == 0) return;
       if (violations < fewest) {
         fewest = violations;

@@ -76,9 +76,7 @@ class AnyProblem {
   Vector transpose_times(VectorIn r) const { return self_->transpose_times(r); }
   Vector squared_norms() const { return self_->squared_norms(); }
   Index num_groups() const { return self_->num_groups(); }
-  AnyProblem restricted_to(std::span<const Index> groups) const {
-    return AnyProblem(self_->restricted_to(groups));
-  }
+  AnyProblem restricted_to(std::span<const Index> groups) const { return AnyProblem(self_->restricted_to(groups)); }
 
  private:
   struct Interface {
@@ -101,9 +99,7 @@ class AnyProblem {
     Index cols() const override { return problem->cols(); }
     const Vector& rhs() const override { return problem->rhs(); }
     void column(Index j, VectorOut out) const override { problem->column(j, out); }
-    AnyColumns columns(std::span<const Index> js) const override {
-      return AnyColumns(columns_of(*problem, js));
-    }
+    AnyColumns columns(std::span<const Index> js) const override { return AnyColumns(columns_of(*problem, js)); }
     Vector transpose_times(VectorIn r) const override { return problem->transpose_times(r); }
     Vector squared_norms() const override { return problem->squared_norms(); }
     Index num_groups() const override { return problem->num_groups(); }
@@ -119,7 +115,6 @@ class AnyProblem {
 
   std::shared_ptr<const Interface> self_;
 };
-static_assert(BlockFittingProblem<AnyProblem> && FullGradientProblem<AnyProblem> &&
-              GroupedFittingProblem<AnyProblem>);
+static_assert(BlockFittingProblem<AnyProblem> && FullGradientProblem<AnyProblem> && GroupedFittingProblem<AnyProblem>);
 
 }  // namespace supple

@@ -16,9 +16,8 @@ struct UniformRandom {
     if (request.size == SelectionRequest::unlimited) return smallest_selection(*this, problem, request);
     SelectionRun<P> run(problem, request);
     WorkingSet<P> S = run.start();
-    S.append(run.evaluate(
-                    Random(seed).sample(run.rules.eligible_without(S.indices()), run.rules.size() - S.size()))
-                 .block);
+    S.append(
+        run.evaluate(Random(seed).sample(run.rules.eligible_without(S.indices()), run.rules.size() - S.size())).block);
     run.record(S, S.fit());
     return run.finish(S, run.status_at_size(), 1, "size reached");
   }

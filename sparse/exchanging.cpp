@@ -89,8 +89,7 @@ bool keeps_signs(const SweptGram& swept, const Pair& pair) {
   const Index i = pair.leaving, j = pair.entering;
   const double h_i = -T(i, i), y = T(i, j), w_j = (t[j] + y * t[i] / h_i) / (T(j, j) + y * y / h_i);
   for (Index k = 0; k < t.size(); ++k)
-    if (in[k] && k != i && t[k] + T(k, i) * t[i] / h_i - w_j * (T(k, j) + T(k, i) * y / h_i) <= 0)
-      return false;
+    if (in[k] && k != i && t[k] + T(k, i) * t[i] / h_i - w_j * (T(k, j) + T(k, i) * y / h_i) <= 0) return false;
   return true;
 }
 
@@ -100,8 +99,7 @@ std::vector<Index> exchange(MatrixIn gram, VectorIn atb, VectorIn w, const std::
   assert(gram.rows() == atb.size() && static_cast<Index>(fixed.size()) == atb.size());
   const Index n = atb.size();
   const Vector scale = gram.diagonal().unaryExpr([](double g) { return g > 0 ? 1 / std::sqrt(g) : 0; });
-  SweptGram swept{scale.asDiagonal() * gram * scale.asDiagonal(), atb.cwiseProduct(scale),
-                  std::vector<char>(n, 0)};
+  SweptGram swept{scale.asDiagonal() * gram * scale.asDiagonal(), atb.cwiseProduct(scale), std::vector<char>(n, 0)};
   const double rounding = 1e-14 * swept.t.squaredNorm();
 
   std::vector<Index> support;
@@ -110,8 +108,8 @@ std::vector<Index> exchange(MatrixIn gram, VectorIn atb, VectorIn w, const std::
   if (swept.sweep(support)) {
     for (std::size_t count = 0; count < support.size(); ++count) {
       const std::vector<Pair> pairs = gainful_pairs(swept, fixed, rounding);
-      const auto pair = std::find_if(pairs.begin(), pairs.end(),
-                                     [&](const Pair& some) { return keeps_signs(swept, some); });
+      const auto pair =
+          std::find_if(pairs.begin(), pairs.end(), [&](const Pair& some) { return keeps_signs(swept, some); });
       if (pair == pairs.end()) break;
       swept.pivot(pair->leaving);
       swept.pivot(pair->entering);

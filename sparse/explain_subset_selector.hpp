@@ -10,9 +10,10 @@ namespace supple {
 template <typename S>
 consteval bool explain_subset_selector() {
   using P = archetype::Fitting;
-  static_assert(requires(S& select, const P& problem, const SelectionRequest& request) { select(problem, request); },
-                "SubsetSelector: `template <FittingProblem P> Selection operator()(const P& problem, const "
-                "SelectionRequest& request) const` is missing, or does not take every FittingProblem");
+  static_assert(
+      requires(S & select, const P& problem, const SelectionRequest& request) { select(problem, request); },
+      "SubsetSelector: `template <FittingProblem P> Selection operator()(const P& problem, const "
+      "SelectionRequest& request) const` is missing, or does not take every FittingProblem");
   static_assert(
       requires(const S& select, const P& problem, const SelectionRequest& request) { select(problem, request); },
       "SubsetSelector: operator()(problem, request) must be const");

@@ -33,8 +33,7 @@ Matrix symmetric_gram(Index n, const Piece& piece) {
   parallel_for((n + tile - 1) / tile, [&](Index q) {
     const Index j = q * tile, width = std::min(tile, n - j);
     const auto right = piece(j, j + width);
-    for (Index i = 0; i < j; i += tile)
-      G.block(i, j, tile, width).noalias() = piece(i, i + tile).transpose() * right;
+    for (Index i = 0; i < j; i += tile) G.block(i, j, tile, width).noalias() = piece(i, i + tile).transpose() * right;
     G.block(j, j, width, width).noalias() = right.transpose() * right;
   });
   G.triangularView<Eigen::StrictlyLower>() = G.transpose();
@@ -120,8 +119,7 @@ Matrix GatheredColumns::gathered(Index begin, Index end) const {
 Matrix GatheredColumns::gram(const GatheredColumns& other) const {
   const auto piece = [this](Index begin, Index end) { return gathered(begin, end); };
   if (this == &other) return symmetric_gram(size(), piece);
-  return supple::gram(size(), piece, other.size(),
-                      [&](Index begin, Index end) { return other.gathered(begin, end); });
+  return supple::gram(size(), piece, other.size(), [&](Index begin, Index end) { return other.gathered(begin, end); });
 }
 
 Vector GatheredColumns::squared_norms() const {

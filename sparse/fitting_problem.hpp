@@ -33,9 +33,7 @@ concept ColumnBlock = std::movable<C> &&
   { c.index(k) } -> std::convertible_to<Index>;             // number in A of column k of the block
   { c.times(v) } -> std::convertible_to<Vector>;            // A_C v    (rows)
   { c.transpose_times(v) } -> std::convertible_to<Vector>;  // A_Cᵀ v  (|C|)
-  {
-    c.gram(c)
-    } -> std::convertible_to<Matrix>;  // A_Cᵀ A_D for a block D of the same problem; c.gram(c) is symmetric
+  { c.gram(c) } -> std::convertible_to<Matrix>;  // A_Cᵀ A_D for a block D of the same problem; c.gram(c) is symmetric
   { c.squared_norms() } -> std::convertible_to<Vector>;  // ‖A_C e_k‖²  (|C|)
   { c.subset(positions) } -> std::same_as<C>;            // copy of the columns at these places of the block
   grown.append(c);                                       // union of disjoint blocks, c behind

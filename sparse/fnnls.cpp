@@ -45,8 +45,8 @@ struct Normalized {
 
   Normalized(MatrixIn gram, VectorIn atb)
       : scale(gram.diagonal().unaryExpr([](double g) { return g > 0 ? 1 / std::sqrt(g) : 0; })),
-        factor{scale.asDiagonal() * gram * scale.asDiagonal(), atb.cwiseProduct(scale),
-               UpdatableCholesky(atb.size())} {}
+        factor{scale.asDiagonal() * gram * scale.asDiagonal(), atb.cwiseProduct(scale), UpdatableCholesky(atb.size())} {
+  }
 };
 
 void require_normal_equations(MatrixIn gram, VectorIn atb) {
@@ -70,13 +70,11 @@ NnlsSolution Fnnls::operator()(MatrixIn gram, VectorIn atb, std::span<const Inde
   require_normal_equations(gram, atb);
   const Index n = atb.size();
   for (Index i : start)
-    require(0 <= i && i < n,
-            "passive holds " + std::to_string(i) + ", expected 0 to " + std::to_string(n - 1));
+    require(0 <= i && i < n, "passive holds " + std::to_string(i) + ", expected 0 to " + std::to_string(n - 1));
   if (!gram.allFinite() || !atb.allFinite()) return not_finite(n);
 
   Normalized problem(gram, atb);
-  ActiveSet<GramFactor> set{std::move(problem.factor), tolerance,
-                            max_iterations > 0 ? max_iterations : 3 * n + 30};
+  ActiveSet<GramFactor> set{std::move(problem.factor), tolerance, max_iterations > 0 ? max_iterations : 3 * n + 30};
   const bool finished = set.run({start.begin(), start.end()});
   Report report;
   report.iterations = set.iterations;
@@ -93,8 +91,7 @@ NnlsSolution least_squares(MatrixIn gram, VectorIn atb) {
   set.run_unconstrained();
   Report report;
   report.iterations = 1;
-  report.residual =
-      set.g.size() && set.factor.scale() > 0 ? set.g.cwiseAbs().maxCoeff() / set.factor.scale() : 0;
+  report.residual = set.g.size() && set.factor.scale() > 0 ? set.g.cwiseAbs().maxCoeff() / set.factor.scale() : 0;
   report.status = nnls_status(true, report.residual, 1e-12);
   return solution_of(std::move(set), problem.scale, report);
 }

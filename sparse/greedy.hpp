@@ -52,8 +52,7 @@ Selection grow(const Growth& growth, const P& problem, const SelectionRequest& r
     const std::vector<Index> rest = run.rules.eligible_without(sorted_union(S.indices(), barred));
     const Scan<P> drawn = run.scan(random.sample(rest, growth.candidates), r);
     const Vector values = growth.measure == Measure::Cosine ? drawn.cosines() : drawn.correlations;
-    const std::vector<Index> entering =
-        largest_positive(values, std::min(growth.batch, largest_size - S.size()));
+    const std::vector<Index> entering = largest_positive(values, std::min(growth.batch, largest_size - S.size()));
     if (entering.empty()) {
       if (drawn.size() == static_cast<Index>(rest.size()))
         return finish(run.status_at_size(), "no column improves the fit");

@@ -25,8 +25,7 @@ struct GreedyCubature {
     require(candidates >= 1, "candidates is less than 1, expected about 100");
     require(subset_groups >= 0, "subset_groups is negative, expected 0 (all) or about 10");
     if constexpr (GroupedFittingProblem<P>)
-      if (0 < subset_groups && subset_groups < problem.num_groups())
-        return with_subset_training(problem, request);
+      if (0 < subset_groups && subset_groups < problem.num_groups()) return with_subset_training(problem, request);
     return grow({.tolerance = tolerance,
                  .candidates = candidates,
                  .batch = 1,
@@ -58,9 +57,7 @@ struct GreedyCubature {
       run.drop_unused(S, w);
       joined.clear();
     };
-    const auto finish = [&](Status status, const char* reason) {
-      return run.finish(S, status, iterations, reason);
-    };
+    const auto finish = [&](Status status, const char* reason) { return run.finish(S, status, iterations, reason); };
     for (; iterations < max_iterations; ++iterations) {
       const auto num_joined = static_cast<Index>(joined.size()), size = S.size() + num_joined;
       if (size >= s || num_joined > size / 20) {
@@ -70,8 +67,7 @@ struct GreedyCubature {
       }
       run.tell(S.size(), s);
 
-      const auto subset =
-          problem.restricted_to(random.sample(all_positions(problem.num_groups()), subset_groups));
+      const auto subset = problem.restricted_to(random.sample(all_positions(problem.num_groups()), subset_groups));
       const std::vector<Index> present = sorted_union(S.indices(), joined);
       const std::vector<Index> rest = run.rules.eligible_without(present);
       const std::vector<Index> drawn = random.sample(rest, candidates);
@@ -87,9 +83,7 @@ struct GreedyCubature {
                    norms = block.squared_norms().cwiseSqrt();
       if (!norms.allFinite()) run.evaluate(drawn);  // which says which column it is, and throws
       Index best = 0;
-      (norms.array() > 0)
-          .select(g.cwiseQuotient(norms), -std::numeric_limits<double>::infinity())
-          .maxCoeff(&best);
+      (norms.array() > 0).select(g.cwiseQuotient(norms), -std::numeric_limits<double>::infinity()).maxCoeff(&best);
       joined.push_back(drawn[best]);
     }
     return finish(Status::MaxIterations, "limit of iterations reached");

@@ -95,8 +95,7 @@ Selection iterative_hard_thresholding(const Options& options, Signs signs, const
       const bool same_support = chosen.empty() && static_cast<Index>(kept.size()) == n;
       if (!normalized || same_support || mu * A_S(change).squaredNorm() <= 0.99 * change.squaredNorm()) break;
     }
-    if (change.norm() <= 1e-12 * w_next.norm())
-      return finish(run.status_at_size(), "the weights do not change");
+    if (change.norm() <= 1e-12 * w_next.norm()) return finish(run.status_at_size(), "the weights do not change");
 
     X.keep(kept);
     X.append(fresh.subset(chosen));

@@ -10,7 +10,7 @@ enum class QuasiNewtonMethod {
   Lbfgs,            ///< limited-memory BFGS with bounds, a relative of L-BFGS-B (Nocedal 1980; Luksan)
   VariableMetric,   ///< shifted limited-memory variable metric, rank 2 (Vlček & Lukšan 2006)
   TruncatedNewton,  ///< preconditioned, with restarts (Dembo & Steihaug 1982)
-  Ccsa,  ///< conservative convex separable approximations, with a diagonal quadratic (Svanberg 2002)
+  Ccsa,             ///< conservative convex separable approximations, with a diagonal quadratic (Svanberg 2002)
 };
 
 /// min ½ ‖A w − b‖² over w ≥ 0 by a general-purpose bounded minimiser from NLopt. Slow on ill-conditioned

@@ -91,8 +91,7 @@ Selection hard_thresholding_pursuit(const Options& options, Signs signs, const P
     std::vector<Index> next = sorted_union(indices_at(X.block(), kept), indices_at(fresh, chosen));
     const bool same = chosen.empty() && static_cast<Index>(kept.size()) == X.size();
     if (entering.empty() || same || next == previous) {
-      if (static_cast<Index>(rest.size()) <= c)
-        return finish(run.status_at_size(), "no column improves the selection");
+      if (static_cast<Index>(rest.size()) <= c) return finish(run.status_at_size(), "no column improves the selection");
       if (++unchanged >= options.patience) return finish(Status::Stagnated, "repeated draws change nothing");
       continue;
     }

@@ -52,9 +52,7 @@ struct NnSp {
     run.drop_unused(S, w);
 
     Index iterations = 0, unchanged = 0;
-    const auto finish = [&](Status status, const char* reason) {
-      return run.finish(S, status, iterations, reason);
-    };
+    const auto finish = [&](Status status, const char* reason) { return run.finish(S, status, iterations, reason); };
     for (; iterations < limit; ++iterations) {
       if (run.met(tolerance)) return finish(Status::Converged, "target error reached");
       run.tell(iterations, limit);

@@ -128,8 +128,7 @@ NnlsFit Nnls::operator()(MatrixIn A, VectorIn b, std::span<const Index> start) c
   require_size("b", b.size(), A.rows());
   const Index n = A.cols();
   for (Index i : start)
-    require(0 <= i && i < n,
-            "passive holds " + std::to_string(i) + ", expected 0 to " + std::to_string(n - 1));
+    require(0 <= i && i < n, "passive holds " + std::to_string(i) + ", expected 0 to " + std::to_string(n - 1));
   const Index limit = max_iterations > 0 ? max_iterations : 3 * n + 30;
 
   NnlsFit fit;
@@ -162,8 +161,7 @@ NnlsFit Nnls::operator()(MatrixIn A, VectorIn b, std::span<const Index> start) c
     Indices all(n);
     std::iota(all.begin(), all.end(), Index{0});
     const DenseColumns columns(std::move(all), A * scale.asDiagonal());
-    const NnlsSolution solution =
-        Fnnls{tolerance, limit}(columns.gram(columns), columns.transpose_times(b), passive);
+    const NnlsSolution solution = Fnnls{tolerance, limit}(columns.gram(columns), columns.transpose_times(b), passive);
     iterations = solution.report.iterations;
     Vector w = solution.w, r = b - columns.times(w);
     for (int step = 0; step < 3 && n > 0; ++step) {  // refinement with the residual of A itself
@@ -179,8 +177,7 @@ NnlsFit Nnls::operator()(MatrixIn A, VectorIn b, std::span<const Index> start) c
     // They know squares: pivots below 1e-4, or errors below 1e-5 of b, are too close to the square root of
     // rounding.
     const double error = b_norm > 0 ? fit.residual_norm / b_norm : 0;
-    const bool digits_kept = fit.report.residual <= tolerance &&
-                             solution.passive.factor.smallest_pivot() > 1e-4 &&
+    const bool digits_kept = fit.report.residual <= tolerance && solution.passive.factor.smallest_pivot() > 1e-4 &&
                              (error > 1e-5 || error < 1e-14);
     enough = method == NnlsMethod::NormalEquations || !finished || digits_kept;
   }

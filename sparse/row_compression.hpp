@@ -56,8 +56,7 @@ void visit_columns(const P& problem, const std::vector<Index>& columns, const Vi
 /// \note evaluates each of the columns once; keeps sketch.rows() · |columns| numbers.
 template <FittingProblem P>
 CompressedRows sketch_rows(const CountSketch& sketch, const P& problem, const std::vector<Index>& columns) {
-  CompressedRows result{Matrix(sketch.rows(), static_cast<Index>(columns.size())), Vector(sketch.rows()),
-                        columns};
+  CompressedRows result{Matrix(sketch.rows(), static_cast<Index>(columns.size())), Vector(sketch.rows()), columns};
   sketch.apply(problem.rhs(), result.b);
   visit_columns(problem, columns, [&](Index begin, const Matrix& block) {
     parallel_for(block.cols(), [&](Index k) { sketch.apply(block.col(k), result.A.col(begin + k)); });
@@ -71,8 +70,7 @@ CompressedRows sketch_rows(const CountSketch& sketch, const P& problem, const st
 /// \note rows · |columns| numbers.
 /// \see Halko, Martinsson & Tropp 2011.
 template <FittingProblem P>
-CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem,
-                             const std::vector<Index>& columns);
+CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem, const std::vector<Index>& columns);
 
 /// Runs `select` on compressed rows of the eligible columns, then fits the weights of what it chose to all
 /// rows. In the history, errors of the compressed problem are NaN: they say nothing about all rows.
@@ -98,8 +96,7 @@ struct Sketched {
     const SelectionRules rules(request, problem.cols(), problem.rhs());
     const Index wanted = rows > 0 ? rows : std::max<Index>(256, 8 * rules.size());
     const CountSketch sketch(problem.rows(), std::min(wanted, problem.rows()), seed);
-    return select_on_rows(sketch_rows(sketch, problem, rules.eligible()), select, problem, request,
-                          stopwatch);
+    return select_on_rows(sketch_rows(sketch, problem, rules.eligible()), select, problem, request, stopwatch);
   }
 };
 
@@ -112,8 +109,7 @@ Matrix orthonormalized(const Matrix& Y);
 Matrix whitening(const Matrix& J, Index rows);
 
 template <FittingProblem P>
-CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem,
-                             const std::vector<Index>& columns) {
+CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem, const std::vector<Index>& columns) {
   const auto m = static_cast<Index>(columns.size());
   const Index width = std::min({rows + 10, problem.rows(), m});
   Random random(seed);
@@ -129,8 +125,7 @@ CompressedRows whitened_rows(Index rows, std::uint64_t seed, const P& problem,
   Matrix J(width, m);
   visit_columns(problem, columns, [&](Index begin, const Matrix& block) {
     parallel_ranges(block.cols(), 64, [&](Index first, Index last) {
-      J.middleCols(begin + first, last - first).noalias() =
-          Q.transpose() * block.middleCols(first, last - first);
+      J.middleCols(begin + first, last - first).noalias() = Q.transpose() * block.middleCols(first, last - first);
     });
   });
   const Matrix S = whitening(J, rows);
@@ -144,8 +139,7 @@ Selection select_on_rows(const CompressedRows& compressed, const S& select, cons
   SelectionRun<P> run(problem, request);
   run.account(static_cast<Index>(compressed.columns.size()));
   std::vector<Index> position(problem.cols(), -1);
-  for (std::size_t k = 0; k < compressed.columns.size(); ++k)
-    position[compressed.columns[k]] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < compressed.columns.size(); ++k) position[compressed.columns[k]] = static_cast<Index>(k);
   const auto original = [&](const std::vector<Index>& positions) {
     std::vector<Index> indices;
     for (Index k : positions) indices.push_back(compressed.columns[k]);
@@ -190,14 +184,13 @@ Selection select_on_rows(const CompressedRows& compressed, const S& select, cons
     inner.target_error *= 0.8 * request.target_error / std::max(run.error(), 1e-15);
     inner.warm_start = chosen;
   }
-  Selection selection =
-      run.finish(working, lost ? Status::Stagnated : chosen.report.status, chosen.report.iterations,
-                 chosen.report.stop_reason + (lost ? " on the compressed rows, but not on all" : ""));
+  Selection selection = run.finish(working, lost ? Status::Stagnated : chosen.report.status, chosen.report.iterations,
+                                   chosen.report.stop_reason + (lost ? " on the compressed rows, but not on all" : ""));
   std::vector<SelectionStep>& history = selection.report.history;
   history.insert(history.begin(), steps.begin(), steps.end());
-  std::stable_sort(
-      history.begin(), history.end(),
-      [](const SelectionStep& first, const SelectionStep& second) { return first.seconds < second.seconds; });
+  std::stable_sort(history.begin(), history.end(), [](const SelectionStep& first, const SelectionStep& second) {
+    return first.seconds < second.seconds;
+  });
   for (SelectionStep& step : history) step.seconds += compressing;
   selection.report.seconds += compressing;
   return selection;

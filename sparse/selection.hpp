@@ -54,9 +54,8 @@ struct SelectionRequest {
   Index size;                     ///< largest support s, 1 ≤ s ≤ m; unlimited: target_error decides
   double target_error = 0;        ///< stop as soon as ‖A w − b‖ ≤ target_error ‖b‖
   std::vector<Index> candidates;  ///< columns that may be chosen, beside must_keep; empty: all
-  std::vector<Index>
-      must_keep;         ///< columns that are in the answer whatever happens, if need be with weight 0
-  Selection warm_start;  ///< an earlier answer to improve; what of it is no candidate is left out
+  std::vector<Index> must_keep;   ///< columns that are in the answer whatever happens, if need be with weight 0
+  Selection warm_start;           ///< an earlier answer to improve; what of it is no candidate is left out
   /// Held-out error of a trial selection, for the history only; called once an iteration.
   std::function<double(const std::vector<Index>& indices, VectorIn weights)> validate;
   Progress progress;

@@ -8,8 +8,8 @@ namespace {
 
 void require_columns(const char* name, const std::vector<Index>& indices, Index cols) {
   for (Index j : indices)
-    require(0 <= j && j < cols, std::string(name) + " holds column " + std::to_string(j) +
-                                    ", expected 0 to " + std::to_string(cols - 1));
+    require(0 <= j && j < cols,
+            std::string(name) + " holds column " + std::to_string(j) + ", expected 0 to " + std::to_string(cols - 1));
 }
 
 std::string to_text(double x) {
@@ -23,20 +23,17 @@ std::string to_text(double x) {
 SelectionRules::SelectionRules(const SelectionRequest& request, Index cols, const Vector& b) {
   const bool unlimited = request.size == SelectionRequest::unlimited;
   require(unlimited || (1 <= request.size && request.size <= cols),
-          "size is " + std::to_string(request.size) + ", expected 1 to the number of columns, " +
-              std::to_string(cols));
+          "size is " + std::to_string(request.size) + ", expected 1 to the number of columns, " + std::to_string(cols));
   require(request.target_error >= 0 && request.target_error < std::numeric_limits<double>::infinity(),
           "target_error is " + std::to_string(request.target_error) + ", expected a number from 0 up");
-  require(!unlimited || request.target_error > 0,
-          "size is unlimited and target_error 0, expected one of them");
+  require(!unlimited || request.target_error > 0, "size is unlimited and target_error 0, expected one of them");
   require_columns("candidates", request.candidates, cols);
   require_columns("must_keep", request.must_keep, cols);
   require_columns("warm_start", request.warm_start.indices, cols);
   require_size("warm_start.weights", request.warm_start.weights.size(), request.warm_start.size());
   for (Index i = 0; i < b.size(); ++i)
     if (!std::isfinite(b[i]))
-      throw InputError("b is " + std::to_string(b[i]) + " in row " + std::to_string(i) +
-                       ", expected a finite number");
+      throw InputError("b is " + std::to_string(b[i]) + " in row " + std::to_string(i) + ", expected a finite number");
   const double largest = b.size() > 0 ? b.cwiseAbs().maxCoeff() : 0;
   if (largest > 0 && largest < 1e-140)
     throw InputError("the largest entry of b is " + to_text(largest) +
@@ -56,8 +53,7 @@ SelectionRules::SelectionRules(const SelectionRequest& request, Index cols, cons
 
   std::vector<Index> warm;  // positions in the warm start
   for (Index k = 0; k < request.warm_start.size(); ++k)
-    if (role_[request.warm_start.indices[k]] == Role::Candidate && request.warm_start.weights[k] > 0)
-      warm.push_back(k);
+    if (role_[request.warm_start.indices[k]] == Role::Candidate && request.warm_start.weights[k] > 0) warm.push_back(k);
   const Vector& weights = request.warm_start.weights;
   std::stable_sort(warm.begin(), warm.end(), [&](Index k, Index l) { return weights[k] > weights[l]; });
   start_ = must_keep_;

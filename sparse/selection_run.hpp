@@ -24,7 +24,7 @@ class SelectionRules {
   /// is not finite.
   SelectionRules(const SelectionRequest& request, Index cols, const Vector& b);
 
-  Index size() const { return size_; }  ///< s, at most the number of eligible columns
+  Index size() const { return size_; }                              ///< s, at most the number of eligible columns
   const std::vector<Index>& eligible() const { return eligible_; }  ///< candidates and must-keep, ascending
   const std::vector<Index>& must_keep() const { return must_keep_; }
   bool must_keep(Index j) const { return role_[j] == Role::MustKeep; }
@@ -56,8 +56,7 @@ inline Index share(double factor, Index s) {
 inline std::pair<std::vector<Index>, std::vector<Index>> split_at(Index first_size,
                                                                   const std::vector<Index>& positions) {
   std::pair<std::vector<Index>, std::vector<Index>> parts;
-  for (Index k : positions)
-    k < first_size ? parts.first.push_back(k) : parts.second.push_back(k - first_size);
+  for (Index k : positions) k < first_size ? parts.first.push_back(k) : parts.second.push_back(k - first_size);
   return parts;
 }
 
@@ -104,9 +103,7 @@ class SelectionRun {
   bool met(double tolerance) const { return error_ <= std::max({tolerance, request_.target_error, 1e-15}); }
 
   /// What it means to have s columns: all that was asked for, unless that was an error.
-  Status status_at_size() const {
-    return request_.target_error > 0 && !met(0) ? Status::Stagnated : Status::Converged;
-  }
+  Status status_at_size() const { return request_.target_error > 0 && !met(0) ? Status::Stagnated : Status::Converged; }
 
   void account(Index columns) { columns_evaluated_ += columns; }  ///< evaluated elsewhere
 
@@ -147,8 +144,8 @@ class SelectionRun {
         result.norms.segment(begin, size) = evaluated.norms;
       }
     }
-    result.correlations = (result.correlations.array().abs() > 1e-13 * b_norm_ * result.norms.array())
-                              .select(result.correlations, 0);
+    result.correlations =
+        (result.correlations.array().abs() > 1e-13 * b_norm_ * result.norms.array()).select(result.correlations, 0);
     return result;
   }
 
@@ -272,8 +269,7 @@ class SelectionRun {
       best_weights_ = Vector::Zero(static_cast<Index>(best_indices_.size()));
     }
     std::vector<Index> order = all_positions(static_cast<Index>(best_indices_.size()));
-    std::sort(order.begin(), order.end(),
-              [&](Index k, Index l) { return best_indices_[k] < best_indices_[l]; });
+    std::sort(order.begin(), order.end(), [&](Index k, Index l) { return best_indices_[k] < best_indices_[l]; });
     best_weights_ = Vector(best_weights_(order));
     std::sort(best_indices_.begin(), best_indices_.end());
 

@@ -44,8 +44,7 @@ auto with_selector(std::string_view name, std::uint64_t seed, const Use& use) {
 
 /// with_selector(name, seed, …)(problem, request).
 template <FittingProblem P>
-Selection select_by_name(std::string_view name, const P& problem, const SelectionRequest& request,
-                         std::uint64_t seed) {
+Selection select_by_name(std::string_view name, const P& problem, const SelectionRequest& request, std::uint64_t seed) {
   return with_selector(name, seed, [&](const auto& select) { return select(problem, request); });
 }
 

@@ -31,8 +31,7 @@ class WorkingSet {
  public:
   using Block = ColumnsOf<P>;
 
-  explicit WorkingSet(const P& problem)
-      : problem_(&problem), block_(columns_of(problem, std::span<const Index>())) {}
+  explicit WorkingSet(const P& problem) : problem_(&problem), block_(columns_of(problem, std::span<const Index>())) {}
 
   Index size() const { return block_.size(); }
   const Block& block() const { return block_; }
@@ -74,9 +73,8 @@ class WorkingSet {
   /// The same with only the columns at these positions, started from all of them; 0 elsewhere.
   Vector fit_on(const std::vector<Index>& positions) const {
     Vector w = Vector::Zero(size());
-    w(positions) = Fnnls{}(gram_(positions, positions), atb_(positions),
-                           all_positions(static_cast<Index>(positions.size())))
-                       .w;
+    w(positions) =
+        Fnnls{}(gram_(positions, positions), atb_(positions), all_positions(static_cast<Index>(positions.size()))).w;
     return w;
   }
 
@@ -87,8 +85,7 @@ class WorkingSet {
       const Vector correction = solution.passive.solve(block_.transpose_times(residual(solution.w)));
       if (correction.norm() <= 1e-14 * solution.w.norm()) return;
       const Vector w = solution.w + correction;
-      if ((signs == Signs::NonNegative && !(w.minCoeff() >= 0)) ||
-          residual(w).norm() >= residual(solution.w).norm())
+      if ((signs == Signs::NonNegative && !(w.minCoeff() >= 0)) || residual(w).norm() >= residual(solution.w).norm())
         return;
       solution.w = w;
     }

@@ -48,7 +48,8 @@ testing::AssertionResult agree(const std::string& claim, const Name& name, Matri
 inline testing::AssertionResult agree(const std::string& claim, const std::string& name, double found, double expected,
                                       double tolerance, const std::string& origin = "") {
   const Vector found_entry = Vector::Constant(1, found), expected_entry = Vector::Constant(1, expected);
-  return agree(claim, [&](Index, Index) { return name; }, found_entry, expected_entry, tolerance, origin);
+  return agree(
+      claim, [&](Index, Index) { return name; }, found_entry, expected_entry, tolerance, origin);
 }
 
 /// The first that does not hold, or true.

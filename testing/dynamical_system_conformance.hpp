@@ -43,9 +43,7 @@ class DynamicalSystemConformance : public testing::Test {
   }
   Vector deformed(std::uint64_t seed) const { return Factory::deformed(system, seed); }
   Index num_nodes() const { return Factory::nodal_mass(system).size(); }
-  Point at_node(VectorIn u, Index v) const {
-    return Factory::displacements(system, u).template segment<3>(3 * v);
-  }
+  Point at_node(VectorIn u, Index v) const { return Factory::displacements(system, u).template segment<3>(3 * v); }
 
   const System system = Factory::make();
 };
@@ -129,10 +127,8 @@ TYPED_TEST_P(DynamicalSystemConformance, ProjectedLoadsDoTheWorkOfTheLoads) {
       sum += term;
       magnitude += std::abs(term);
     };
-    for (Index v = 0; v < n; ++v)
-      add(work, size, mass[v] * loads.gravity.dot(u_nodes.template segment<3>(3 * v)));
-    for (const NodalForce& f : loads.forces)
-      add(work, size, f.force.dot(u_nodes.template segment<3>(3 * f.node)));
+    for (Index v = 0; v < n; ++v) add(work, size, mass[v] * loads.gravity.dot(u_nodes.template segment<3>(3 * v)));
+    for (const NodalForce& f : loads.forces) add(work, size, f.force.dot(u_nodes.template segment<3>(3 * f.node)));
     for (const PointSpring& s : loads.springs) {
       add(work, size, s.stiffness * s.displacement.dot(u_nodes.template segment<3>(3 * s.node)));
       add(spring_work, spring_size,
@@ -166,15 +162,12 @@ TYPED_TEST_P(DynamicalSystemConformance, WrongSizesAndLoadsThrowAtTheDoor) {
     EXPECT_THROW((void)this->system.project(loads), std::invalid_argument) << what;
   };
   expect_throw({.gravity = {0, nan, 0}, .forces = {}, .springs = {}}, "gravity NaN");
-  expect_throw({.gravity = Point::Zero(), .forces = {{n, Point::Zero()}}, .springs = {}},
-               "force past the end");
+  expect_throw({.gravity = Point::Zero(), .forces = {{n, Point::Zero()}}, .springs = {}}, "force past the end");
   expect_throw({.gravity = Point::Zero(), .forces = {{-1, Point::Zero()}}, .springs = {}}, "force at -1");
   expect_throw({.gravity = Point::Zero(), .forces = {{0, {nan, 0, 0}}}, .springs = {}}, "force NaN");
-  expect_throw({.gravity = Point::Zero(), .forces = {}, .springs = {{n, 1, Point::Zero()}}},
-               "spring past the end");
+  expect_throw({.gravity = Point::Zero(), .forces = {}, .springs = {{n, 1, Point::Zero()}}}, "spring past the end");
   expect_throw({.gravity = Point::Zero(), .forces = {}, .springs = {{0, 0, Point::Zero()}}}, "no stiffness");
-  expect_throw({.gravity = Point::Zero(), .forces = {}, .springs = {{0, nan, Point::Zero()}}},
-               "stiffness NaN");
+  expect_throw({.gravity = Point::Zero(), .forces = {}, .springs = {{0, nan, Point::Zero()}}}, "stiffness NaN");
   expect_throw({.gravity = Point::Zero(), .forces = {}, .springs = {{0, 1, {0, 0, nan}}}}, "target NaN");
 }
 
@@ -218,7 +211,7 @@ REGISTER_TYPED_TEST_SUITE_P(DynamicalSystemConformance, MassIsPositiveAndEveryUn
                             RestIsAnEquilibriumAndAMinimum, ForceIsTheGradientOfTheEnergy,
                             StiffnessIsTheDerivativeOfTheForce, StiffnessIsSymmetricAndReusesItsMatrix,
                             RestStiffnessIsTheTangentAtRestAndSemidefinite, ProjectedLoadsDoTheWorkOfTheLoads,
-                            NoLoadProjectsToNothing, WrongSizesAndLoadsThrowAtTheDoor,
-                            NumberOfThreadsDoesNotChangeABit, ConstCallsFromSeveralThreadsGiveTheSameBits);
+                            NoLoadProjectsToNothing, WrongSizesAndLoadsThrowAtTheDoor, NumberOfThreadsDoesNotChangeABit,
+                            ConstCallsFromSeveralThreadsGiveTheSameBits);
 
 }  // namespace supple::test

@@ -99,9 +99,10 @@ class ForceModelPromises {
     const Vector eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix>(K, Eigen::EigenvaluesOnly).eigenvalues();
     if (eigenvalues.minCoeff() >= -rounding * K.norm()) return testing::AssertionSuccess();
     return testing::AssertionFailure() << where(i, 0)
-                                       << text("stiffness is not positive semi-definite at rest: smallest eigenvalue: "
-                                               "expected >= 0, found ", eigenvalues.minCoeff(), ", largest ",
-                                               eigenvalues.maxCoeff());
+                                       << text(
+                                              "stiffness is not positive semi-definite at rest: smallest eigenvalue: "
+                                              "expected >= 0, found ",
+                                              eigenvalues.minCoeff(), ", largest ", eigenvalues.maxCoeff());
   }
   /// ‖K − Kᵀ‖ relative to the stiffness at rest, the largest there is.
   double asymmetry() const {
@@ -128,9 +129,9 @@ class ForceModelPromises {
     const Local<dofs> u = state(0, 1), there = u + translation();
     if ((model_->force(0, there) - model_->force(0, u)).norm() > 1e-3 * scale(0) * u.norm())
       return testing::AssertionSuccess();
-    return testing::AssertionFailure()
-           << "force model: translations do not change the force: expected `static constexpr bool translation_invariant "
-              "= true`, for work and storage of a reduced term then fall by a node";
+    return testing::AssertionFailure() << "force model: translations do not change the force: expected `static "
+                                          "constexpr bool translation_invariant "
+                                          "= true`, for work and storage of a reduced term then fall by a node";
   }
 
   /// Pack of these components, component of lane l in state(l, k).
@@ -154,9 +155,9 @@ class ForceModelPromises {
       LocalMatrix<dofs> K;
       for (int j = 0; j < dofs; ++j) f[j] = force[j][lane];
       for (Index e = 0; e < K.size(); ++e) K.data()[e] = stiffness.data()[e][lane];
-      const auto verdict = all_hold(
-          agree(claim, force_entry(i), f, model_->force(i, u_lane), rounding * scale(i) * length_),
-          agree(claim, stiffness_entry(i), K, model_->stiffness(i, u_lane), rounding * scale(i)));
+      const auto verdict =
+          all_hold(agree(claim, force_entry(i), f, model_->force(i, u_lane), rounding * scale(i) * length_),
+                   agree(claim, stiffness_entry(i), K, model_->stiffness(i, u_lane), rounding * scale(i)));
       if (!verdict) return verdict;
     }
     return testing::AssertionSuccess();
@@ -290,11 +291,10 @@ TYPED_TEST_P(ForceModelConformance, PacksEqualTheirTermsLaneByLane) {
   }
 }
 
-REGISTER_TYPED_TEST_SUITE_P(ForceModelConformance, StencilNodesAreDistinctAndInRange,
-                            EveryTermIsInEquilibriumAtRest, ForceIsTheGradientOfTheEnergyIfThereIsOne,
-                            StiffnessIsTheDerivativeOfTheForce,
+REGISTER_TYPED_TEST_SUITE_P(ForceModelConformance, StencilNodesAreDistinctAndInRange, EveryTermIsInEquilibriumAtRest,
+                            ForceIsTheGradientOfTheEnergyIfThereIsOne, StiffnessIsTheDerivativeOfTheForce,
                             TangentIsPositiveSemidefiniteAtRestAndSymmetricWherePromised,
-                            TranslationsChangeNothingWherePromised,
-                            ConstCallsFromSeveralThreadsGiveTheSameBits, PacksEqualTheirTermsLaneByLane);
+                            TranslationsChangeNothingWherePromised, ConstCallsFromSeveralThreadsGiveTheSameBits,
+                            PacksEqualTheirTermsLaneByLane);
 
 }  // namespace supple::test

@@ -69,8 +69,8 @@ class MaterialPromises {
     Mat3 differences;
     for (int j = 0; j < 9; ++j)
       differences.data()[j] = (material_.energy(moved(F, j, h)) - material_.energy(moved(F, j, -h))) / (2 * h);
-    return agree("material: stress is not the gradient of the energy", gradient, stress(material_, F),
-                 differences, difference_tolerance * scale(F), " by differences of the energy" + where(F));
+    return agree("material: stress is not the gradient of the energy", gradient, stress(material_, F), differences,
+                 difference_tolerance * scale(F), " by differences of the energy" + where(F));
   }
   testing::AssertionResult tangent_is_the_derivative_of_the_stress(const Mat3& F) const {
     Matrix9<double> differences;
@@ -189,8 +189,8 @@ class MaterialPromises {
   }
   static std::string gradient(Index i, Index J) { return text("∂ψ/∂F(", i, ",", J, ") = stress(F)(", i, ",", J, ")"); }
   static std::string derivative(Index row, Index column) {
-    return text("tangent(F)(", row, ",", column, ") = ∂P(", row % 3, ",", row / 3, ")/∂F(", column % 3, ",",
-                column / 3, ")");
+    return text("tangent(F)(", row, ",", column, ") = ∂P(", row % 3, ",", row / 3, ")/∂F(", column % 3, ",", column / 3,
+                ")");
   }
 
   testing::AssertionResult unchanged(const char* claim, const char* turned, const Mat3& F_turned, const Mat3& F,
@@ -328,7 +328,6 @@ TYPED_TEST_P(MaterialConformance, FormulasByHandEqualThoseDerived) {
 REGISTER_TYPED_TEST_SUITE_P(MaterialConformance, RestAndRotationsAreFreeOfEnergyAndStress,
                             StressIsTheGradientOfTheEnergy, TangentIsTheDerivativeOfTheStressAndSymmetric, IsObjective,
                             IsIsotropicUnlessItSaysOtherwise, IsLinearElasticityOfItsModuliAtRest,
-                            RefusesModuliThatNoMaterialHas, PacksEqualNumbers,
-                            FormulasByHandEqualThoseDerived);
+                            RefusesModuliThatNoMaterialHas, PacksEqualNumbers, FormulasByHandEqualThoseDerived);
 
 }  // namespace supple::test

@@ -19,11 +19,10 @@ inline testing::AssertionResult is_near(MatrixIn actual, MatrixIn expected, doub
         const auto shown = [&](MatrixIn A) {  // enough to see what is wrong, not a page of a large system
           return A.topLeftCorner(std::min<Index>(A.rows(), 24), std::min<Index>(A.cols(), 12)).eval();
         };
-        return testing::AssertionFailure()
-               << "entry (" << i << ", " << j << ") is " << actual(i, j) << ", expected " << expected(i, j)
-               << " +- " << tolerance << "\nactual\n"
-               << shown(actual).format(format) << "\nexpected\n"
-               << shown(expected).format(format);
+        return testing::AssertionFailure() << "entry (" << i << ", " << j << ") is " << actual(i, j) << ", expected "
+                                           << expected(i, j) << " +- " << tolerance << "\nactual\n"
+                                           << shown(actual).format(format) << "\nexpected\n"
+                                           << shown(expected).format(format);
       }
   return testing::AssertionSuccess();
 }

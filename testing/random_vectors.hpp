@@ -11,8 +11,7 @@ namespace supple::test {
 /// Entries uniform in [−amplitude, amplitude].
 inline Matrix random_matrix(Index rows, Index cols, double amplitude, std::uint64_t seed) {
   Random random(seed);
-  return Matrix::NullaryExpr(rows, cols,
-                             [&](Index, Index) { return amplitude * (2 * random.uniform() - 1); });
+  return Matrix::NullaryExpr(rows, cols, [&](Index, Index) { return amplitude * (2 * random.uniform() - 1); });
 }
 inline Vector random_vector(Index size, double amplitude, std::uint64_t seed) {
   return random_matrix(size, 1, amplitude, seed);

@@ -240,8 +240,7 @@ TYPED_TEST_P(SubsetSelectorConformance, NeverTakesAZeroColumn) {
   const Vector b = this->rhs(A);
   const Selection c = this->expect_sound_answer(DenseProblem(A, b), this->request(12));
   EXPECT_THAT(c.indices, ::testing::Not(::testing::Contains(::testing::AnyOf(0, 44))));
-  EXPECT_EQ(this->expect_sound_answer(DenseProblem(Matrix::Zero(this->rows, this->cols), b), this->request(5))
-                .size(),
+  EXPECT_EQ(this->expect_sound_answer(DenseProblem(Matrix::Zero(this->rows, this->cols), b), this->request(5)).size(),
             0);
 }
 
@@ -311,15 +310,12 @@ TYPED_TEST_P(SubsetSelectorConformance, AsksForHeldOutErrors) {
   for (const SelectionStep& step : c.report.history) EXPECT_EQ(step.held_out_error, 0.25);
 }
 
-REGISTER_TYPED_TEST_SUITE_P(SubsetSelectorConformance, AnswersSoundly,
-                            GivesTheSameBitsAgainWhateverTheNumberOfThreads, KeepsWhatItMust,
-                            KeepsEvenAColumnThatOnlyHarms, ChoosesAmongTheCandidates,
-                            StartsFromAnEarlierSelection, ReachesTheTargetErrorOrSaysWhyNot,
-                            NeedsNoSizeForATargetError, ChoosesOneColumn, TakesAllColumnsOfASmallProblem,
-                            BearsASizeBeyondTheRank, NeedsNothingWhereBIsZero, NeverTakesAZeroColumn,
-                            BearsCopiesOfColumns, BearsColumnsOfVeryDifferentScale,
-                            RefusesAnRhsWhoseSquareIsLost,
-                            RefusesNumbersThatAreNotFinite, RefusesRequestsThatMakeNoSense,
-                            AsksForHeldOutErrors);
+REGISTER_TYPED_TEST_SUITE_P(SubsetSelectorConformance, AnswersSoundly, GivesTheSameBitsAgainWhateverTheNumberOfThreads,
+                            KeepsWhatItMust, KeepsEvenAColumnThatOnlyHarms, ChoosesAmongTheCandidates,
+                            StartsFromAnEarlierSelection, ReachesTheTargetErrorOrSaysWhyNot, NeedsNoSizeForATargetError,
+                            ChoosesOneColumn, TakesAllColumnsOfASmallProblem, BearsASizeBeyondTheRank,
+                            NeedsNothingWhereBIsZero, NeverTakesAZeroColumn, BearsCopiesOfColumns,
+                            BearsColumnsOfVeryDifferentScale, RefusesAnRhsWhoseSquareIsLost,
+                            RefusesNumbersThatAreNotFinite, RefusesRequestsThatMakeNoSense, AsksForHeldOutErrors);
 
 }  // namespace supple::test

@@ -47,9 +47,9 @@ testing::AssertionResult is_mass_orthonormal(const Basis& basis, const System& s
   Vector mass(U.rows());
   for (Index i = 0; i < mass.size(); ++i) mass[i] = system.nodal_mass()[i / System::node_dim];
   const Matrix gram = U.transpose() * mass.asDiagonal() * U;
-  return agree("subspace: columns are not mass-orthonormal",
-               [](Index i, Index j) { return text("u_", i, " . M u_", j); }, gram,
-               Matrix::Identity(U.cols(), U.cols()), 1e-12);
+  return agree(
+      "subspace: columns are not mass-orthonormal", [](Index i, Index j) { return text("u_", i, " . M u_", j); }, gram,
+      Matrix::Identity(U.cols(), U.cols()), 1e-12);
 }
 
 template <Subspace Basis, typename System>
@@ -71,8 +71,7 @@ class SubspaceBuilderConformance : public testing::Test {
   using Builder = decltype(Case::builder());
   static_assert(explain_subspace_builder<Builder, System>());
   static constexpr int node_dim = System::node_dim;
-  static constexpr Index stencil_size =
-      std::remove_cvref_t<decltype(std::declval<System>().model())>::stencil_size;
+  static constexpr Index stencil_size = std::remove_cvref_t<decltype(std::declval<System>().model())>::stencil_size;
 
   const System system = Case::make();
   const decltype(Case::builder()(system)) basis = Case::builder()(system);
@@ -106,8 +105,7 @@ TYPED_TEST_P(SubspaceBuilderConformance, FrequenciesAscendAndOneIsTheSmallestInT
     EXPECT_EQ(report.rigid_modes, 0);
     const FreeComponents components =
         find_free_components(this->system.stencils(), TestFixture::stencil_size, this->system.numbering());
-    const VibrationModes exact =
-        vibration_modes(this->system, {.num_modes = components.num_rigid_modes() + 2});
+    const VibrationModes exact = vibration_modes(this->system, {.num_modes = components.num_rigid_modes() + 2});
     const Vector omega = reduced_modes(project_stiffness(this->basis, this->system)).omega;
     for (Index k = 0; k < std::min(omega.size(), exact.omega.size()); ++k)
       EXPECT_GE(omega[k], exact.omega[k] * (1 - 1e-6)) << "mode " << k;
@@ -115,8 +113,7 @@ TYPED_TEST_P(SubspaceBuilderConformance, FrequenciesAscendAndOneIsTheSmallestInT
   }
   ASSERT_GT(report.omega.size(), report.rigid_modes);
   EXPECT_LE(report.residuals.maxCoeff(), 1e-6);
-  for (Index k = 1; k < report.omega.size(); ++k)
-    EXPECT_GE(report.omega[k], report.omega[k - 1] * (1 - 1e-9));
+  for (Index k = 1; k < report.omega.size(); ++k) EXPECT_GE(report.omega[k], report.omega[k - 1] * (1 - 1e-9));
   // the subspace contains the modes, and no subspace has lower frequencies (Rayleigh)
   const ReducedModes modes = reduced_modes(project_stiffness(this->basis, this->system));
   ASSERT_EQ(modes.num_zero, report.rigid_modes);
@@ -147,9 +144,8 @@ TYPED_TEST_P(SubspaceBuilderConformance, AllViewsOfTheBasisAgree) {
   EXPECT_THROW((void)view.project(Vector::Zero(view.full_dim() - 1)), std::invalid_argument);
 }
 
-REGISTER_TYPED_TEST_SUITE_P(SubspaceBuilderConformance, DimensionsFitAndNumbersAreFinite,
-                            ColumnsAreMassOrthonormal, FixedNodesDoNotMove,
-                            GivesTheSameBitsAgainWhateverTheNumberOfThreads,
+REGISTER_TYPED_TEST_SUITE_P(SubspaceBuilderConformance, DimensionsFitAndNumbersAreFinite, ColumnsAreMassOrthonormal,
+                            FixedNodesDoNotMove, GivesTheSameBitsAgainWhateverTheNumberOfThreads,
                             FrequenciesAscendAndOneIsTheSmallestInTheSubspace, AllViewsOfTheBasisAgree);
 
 }  // namespace supple::test

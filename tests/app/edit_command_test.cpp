@@ -23,7 +23,8 @@ constexpr const char* bend = R"({
 class EditCommandTest : public SuppleProcess {
  protected:
   void reduce(Arguments more = {}) const {
-    Arguments arguments{"reduce", "bar:8x2x2", "-o", "bar.supple", "--poses", "40", "--points", "80", "--held-out", "0"};
+    Arguments arguments{"reduce", "bar:8x2x2", "-o", "bar.supple", "--poses",
+                        "40",     "--points",  "80", "--held-out", "0"};
     if (more.empty()) more = {"--modes", "11"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = supple(arguments);
@@ -90,7 +91,8 @@ TEST_F(EditCommandTest, TakesHandlesByLabelsAndMotionsByMatrix) {
   std::string labels = "# one a node\n";
   for (int v = 0; v < 81; ++v) labels += v < 9 ? "0\n" : v >= 72 ? "2\n" : "1\n";
   write("bar.sel", labels);
-  write("scene.json", R"({"handles": [{"name": "a", "file": "bar.sel", "label": 0}, {"name": "b", "file": "bar.sel", "label": 2}],
+  write("scene.json",
+        R"({"handles": [{"name": "a", "file": "bar.sel", "label": 0}, {"name": "b", "file": "bar.sel", "label": 2}],
     "edits": [{"moves": [{"handle": "b", "matrix": [1,0,0,0, 0,1,0,0.05, 0,0,1,0, 0,0,0,1]}]}]})");
   const json report = this->report({"edit", "bar.supple", "--scene", "scene.json"});
   EXPECT_EQ(report["handles"][0]["nodes"], 9);
@@ -110,7 +112,8 @@ TEST_F(EditCommandTest, RefusesBadScenesInOneLineAndLeavesNothing) {
   refuse(R"({"handles": [], "edits": []})", {"handles", "empty"});
   refuse("{" + left + R"("edits": [{"moves": [{"handle": "right"}]}]})", {"/edits/0/moves/0/handle", "right"});
   refuse("{" + left + R"("edits": [{"moves": [{"handle": "left", "angle": 1}]}]})", {"axis"});
-  refuse("{" + left + R"("edits": [{"moves": [{"handle": "left", "angle": 1, "axis": [0,0,0]}]}]})", {"axis", "direction"});
+  refuse("{" + left + R"("edits": [{"moves": [{"handle": "left", "angle": 1, "axis": [0,0,0]}]}]})",
+         {"axis", "direction"});
   refuse("{" + left + R"("edits": [{"moves": [{"handle": "left", "centre": [0,0,0]}]}]})", {"centre", "angle"});
   refuse("{" + left + R"("edits": [{"moves": [{"handle": "left", "matrix": [2,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]}]}]})",
          {"matrix", "rigid"});
@@ -120,7 +123,8 @@ TEST_F(EditCommandTest, RefusesBadScenesInOneLineAndLeavesNothing) {
   refuse(R"({"handles": [{"name": "a", "file": "none.sel", "label": 1}], "edits": [{"moves": []}]})", {"none.sel"});
   refuse("{" + left + R"("edit": [], "edits": [{"moves": []}]})", {"edit"});
   write("short.sel", "1\n2\n");
-  refuse(R"({"handles": [{"name": "a", "file": "short.sel", "label": 1}], "edits": [{"moves": []}]})", {"short.sel", "81"});
+  refuse(R"({"handles": [{"name": "a", "file": "short.sel", "label": 1}], "edits": [{"moves": []}]})",
+         {"short.sel", "81"});
   write("bad.sel", "1\nx\n");
   refuse(R"({"handles": [{"name": "a", "file": "bad.sel", "label": 1}], "edits": [{"moves": []}]})", {"bad.sel:2"});
   write("scene.json", bend);
@@ -133,7 +137,9 @@ TEST_F(EditCommandTest, EditsInEverySubspace) {
   reduce();
   ASSERT_EQ(supple({"simulate", "bar.supple", "-o", "run", "--every", "5"}).exit_code, 0);
   ASSERT_EQ(supple({"reduce", "bar:8x2x2", "-o", "reference.supple", "--modes", "8", "--poses", "20", "--points", "40",
-                    "--held-out", "0"}).exit_code, 0);
+                    "--held-out", "0"})
+                .exit_code,
+            0);
   ASSERT_EQ(supple({"simulate", "reference.supple", "-o", "snapshots", "--every", "5"}).exit_code, 0);
   const std::vector<Arguments> choices{{"--subspace", "derivatives", "--modes", "4", "--dimension", "24"},
                                        {"--subspace", "skinning", "--dimension", "48"},
@@ -149,13 +155,15 @@ TEST_F(EditCommandTest, EditsInEverySubspace) {
     EXPECT_EQ(supple({"simulate", "bar.supple", "--time", "0.1", "--step", "0.01", "--json", "-"}).exit_code, 0);
   }
   expect_refusal({"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "pca"}, {"--snapshots"});
-  expect_refusal({"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "derivatives", "--modes", "9", "--dimension", "10"},
-                 {"10"});
+  expect_refusal(
+      {"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "derivatives", "--modes", "9", "--dimension", "10"},
+      {"10"});
 }
 
 TEST_F(EditCommandTest, ComparesSubspacesByTheirShapes) {
   write("bend.json", bend);
-  const json report = this->report({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--modes", "10", "-o", "fidelity"});
+  const json report =
+      this->report({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--modes", "10", "-o", "fidelity"});
   ASSERT_EQ(report["shapes"].size(), 5u);
   EXPECT_EQ(report["shapes"][0]["space"], "full");
   EXPECT_EQ(report["shapes"][0]["rms_over_diagonal"], 0.0);
@@ -164,8 +172,10 @@ TEST_F(EditCommandTest, ComparesSubspacesByTheirShapes) {
   EXPECT_EQ(report["shapes"][3]["space"], "modal");
   EXPECT_EQ(report["shapes"][3]["dimension"], report["shapes"][1]["dimension"]);
   EXPECT_LT(off(1), 0.5 * off(3));  // the paper's finding
-  EXPECT_GE(report["shapes"][1]["elastic_energy"].get<double>() + report["shapes"][1]["control_energy"].get<double>(),
-            (report["shapes"][0]["elastic_energy"].get<double>() + report["shapes"][0]["control_energy"].get<double>()) * (1 - 1e-6));
+  EXPECT_GE(
+      report["shapes"][1]["elastic_energy"].get<double>() + report["shapes"][1]["control_energy"].get<double>(),
+      (report["shapes"][0]["elastic_energy"].get<double>() + report["shapes"][0]["control_energy"].get<double>()) *
+          (1 - 1e-6));
   EXPECT_TRUE(report["shapes"][0]["own_minimum"].is_null());
   EXPECT_FALSE(report["shapes"][1]["own_minimum"].is_null());
   const json& full = report["shapes"][0];
@@ -180,8 +190,8 @@ TEST_F(EditCommandTest, ComparesSubspacesByTheirShapes) {
 
   reduce();
   ASSERT_EQ(supple({"edit", "bar.supple", "--scene", "bend.json", "-o", "bent"}).exit_code, 0);
-  const json own = this->report({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--modes", "10", "--subspaces", "pca",
-                                 "--snapshots", "bent"});
+  const json own = this->report(
+      {"fidelity", "bar:8x2x2", "--scene", "bend.json", "--modes", "10", "--subspaces", "pca", "--snapshots", "bent"});
   ASSERT_EQ(own["shapes"].size(), 2u);
   EXPECT_EQ(own["shapes"][1]["space"], "pca");
   EXPECT_LT(own["shapes"][1]["rms_over_diagonal"], 0.1);

@@ -25,7 +25,7 @@ class ReduceCommandTest : public SuppleProcess {
 
   /// A mesh of few cells, by so many points.
   static Arguments cells(const std::string& mesh, Arguments more = {}) {
-    Arguments arguments{"reduce", mesh,      "-o", "bar.supple", "--fix", "x<=0",         "--modes",
+    Arguments arguments{"reduce", mesh,      "-o", "bar.supple", "--fix", "x<=0",       "--modes",
                         "4",      "--poses", "20", "--points",   "24",    "--held-out", "5"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
@@ -88,8 +88,7 @@ TEST_F(ReduceCommandTest, GivesTheSameBytesForTheSameSeedWhateverTheThreads) {
 }
 
 TEST_F(ReduceCommandTest, TakesRecipesAndWhatOverridesThem) {
-  const json paper =
-      report(small({"--recipe", "paper", "--amplitude", "0.02", "--amplitude", "0.01"}))["options"];
+  const json paper = report(small({"--recipe", "paper", "--amplitude", "0.02", "--amplitude", "0.01"}))["options"];
   EXPECT_EQ(paper["selector"], "nn-htp");
   EXPECT_EQ(paper["norm"], "mass");
   EXPECT_EQ(paper["omega_exponent"], 1);
@@ -120,8 +119,7 @@ TEST_F(ReduceCommandTest, HoldsNodesByRuleBoxFileAndRegion) {
   write_two_regions();
   write("held.txt", "0\n1 # a comment\n");
   const auto fixed = [&](const Arguments& how) {
-    Arguments arguments{"reduce", "two.mesh", "-o", "two.supple", "--modes",
-                        "2",      "--poses",  "10", "--points",   "2"};
+    Arguments arguments{"reduce", "two.mesh", "-o", "two.supple", "--modes", "2", "--poses", "10", "--points", "2"};
     arguments.insert(arguments.end(), how.begin(), how.end());
     Outcome outcome = supple([&] {
       auto a = arguments;
@@ -175,8 +173,7 @@ TEST_F(ReduceCommandTest, FitsPosesOfAFile) {
   npy += header;
   npy.append(reinterpret_cast<const char*>(poses.data()), sizeof(double) * poses.size());
   write("poses.npy", npy);
-  const json a = report(small({"--poses-file", "poses.safetensors"})),
-             b = report(small({"--poses-file", "poses.npy"}));
+  const json a = report(small({"--poses-file", "poses.safetensors"})), b = report(small({"--poses-file", "poses.npy"}));
   EXPECT_EQ(a["poses"]["count"], count);
   EXPECT_EQ(a["training_error"], b["training_error"]);
 
@@ -207,8 +204,8 @@ TEST_F(ReduceCommandTest, FitsPosesOfATrajectoryWhateverItsSubspace) {
 
 TEST_F(ReduceCommandTest, TakesSurfacesAsShells) {
   const auto plate = [](Arguments more = {}) {
-    Arguments arguments{"reduce", "plate:12x6", "-o", "plate.supple", "--fix", "x<12%", "--modes", "4",
-                        "--poses", "20",        "--points", "60",      "--held-out", "10"};
+    Arguments arguments{"reduce", "plate:12x6", "-o", "plate.supple", "--fix", "x<12%",      "--modes",
+                        "4",      "--poses",    "20", "--points",     "60",    "--held-out", "10"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   };
@@ -338,13 +335,11 @@ void ReduceCommandTest::expect_arrays_checked(const Arguments& job) const {
       else if (tensor.dtype == DType::I32)
         file.add(name, std::span<const std::int32_t>(std::vector<std::int32_t>(count, -1)), tensor.shape);
       else
-        file.add(name, std::span<const std::int64_t>(std::vector<std::int64_t>(count, 1 << 30)),
-                 tensor.shape);
+        file.add(name, std::span<const std::int64_t>(std::vector<std::int64_t>(count, 1 << 30)), tensor.shape);
     });
     const Outcome outcome = supple({"simulate", "bad.supple", "--time", "1 ms"});
     EXPECT_LE(outcome.exit_code, 2) << name;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), outcome.exit_code == 0 ? 0 : 1)
-        << name;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), outcome.exit_code == 0 ? 0 : 1) << name;
   }
 }
 
@@ -460,7 +455,8 @@ TEST_F(ReduceCommandTest, TakesLawsAndTheirParametersByName) {
   const json named = report(small({"--material", "neo-hookean", "--parameter", "mu=71428.571428571435", "--parameter",
                                    "lambda=285714.28571428580"}));  // of 2e5 Pa and 0.4
   EXPECT_NEAR(named["eigenvalues"]["exact"][0].get<double>() / twice["eigenvalues"]["exact"][0].get<double>(), 1, 1e-6);
-  write("law.json", R"({"law": "neo-hookean", "parameters": {"mu": 71428.571428571435, "lambda": 285714.28571428580}})");
+  write("law.json",
+        R"({"law": "neo-hookean", "parameters": {"mu": 71428.571428571435, "lambda": 285714.28571428580}})");
   const json from_file = report(small({"--materials", "law.json"}));
   EXPECT_EQ(from_file["eigenvalues"]["exact"], named["eigenvalues"]["exact"]);
 }
@@ -487,14 +483,15 @@ TEST_F(ReduceCommandTest, LoadsMaterialsOfOnesOwn) {
   expect_refusal({"info", "bar.supple"}, {"bar.supple", "'gent'", "--plugin"});
   expect_refusal({"simulate", "bar.supple"}, {"bar.supple", "'gent'"});
   EXPECT_GT(report({"simulate", "bar.supple", "--plugin", plugin, "--time", "0.1"})["steps"], 0);
-  const json springs = report(small({"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets"}));
+  const json springs =
+      report(small({"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets"}));
   EXPECT_LT(springs["training_error"], 0.5);
   expect_refusal(
       cells("hexbox:6x2x2", {"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets"}),
       {"spring-tets", "hexahedra"});
   EXPECT_LT(report(cells("hexbox:6x2x2", {"--plugin", plugin, "--material", "gent"}))["training_error"], 0.5);
-  expect_refusal(small({"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets", "--parameter",
-                        "modulus=-1"}),
+  expect_refusal(small({"--plugin", SUPPLE_PLUGINS "/libspring_tets_plugin.so", "--material", "spring-tets",
+                        "--parameter", "modulus=-1"}),
                  {"spring-tets", "not positive"});
   expect_refusal(small({"--plugin", "nowhere.so"}), {"nowhere.so", "no such file"});
   expect_refusal(small({"--plugin", SUPPLE_PLUGINS "/libno_plugin.so"}), {"libno_plugin.so", "not a plug-in"});

@@ -28,8 +28,8 @@ class SelectCommandTest : public SuppleProcess {
   }
 
   void write_npy(const std::string& name, const Matrix& values) const {
-    std::string header = "{'descr': '<f8', 'fortran_order': True, 'shape': (" +
-                         std::to_string(values.rows()) + ", " + std::to_string(values.cols()) + "), }";
+    std::string header = "{'descr': '<f8', 'fortran_order': True, 'shape': (" + std::to_string(values.rows()) + ", " +
+                         std::to_string(values.cols()) + "), }";
     header.resize(117, ' ');
     header += '\n';
     std::string bytes = "\x93NUMPY" + std::string{1, 0, static_cast<char>(header.size()), 0} + header;
@@ -66,8 +66,7 @@ TEST_F(SelectCommandTest, FindsPlantedColumnsAndWeights) {
   const Vector w = planted_weights(120, planted, 5);
   write_npy("G.npy", G);
   write_npy("g.npy", G * w);
-  const json found =
-      report({"select", "--matrix", "G.npy", "--rhs", "g.npy", "--points", "8", "--seed", "1"});
+  const json found = report({"select", "--matrix", "G.npy", "--rhs", "g.npy", "--points", "8", "--seed", "1"});
   EXPECT_EQ(indices(found), planted);
   EXPECT_LT((weights(found) - w(planted)).norm(), 1e-8);
   EXPECT_EQ(found["status"], "converged");
@@ -97,8 +96,7 @@ TEST_F(SelectCommandTest, StatesForEverySelectorTheErrorOfItsWeights) {
     }
     EXPECT_GE(found["seconds"], 0) << selector;
     EXPECT_GE(found["total_seconds"], found["seconds"]) << selector;
-    EXPECT_THAT(found["status"].get<std::string>(),
-                ::testing::AnyOf("converged", "max-iterations", "stagnated"));
+    EXPECT_THAT(found["status"].get<std::string>(), ::testing::AnyOf("converged", "max-iterations", "stagnated"));
     for (const char* key : {"iterations", "columns_evaluated", "peak_memory"})
       EXPECT_GT(found[key], 0) << key << selector;
     EXPECT_FALSE(found["history"].empty()) << selector;
@@ -123,8 +121,7 @@ TEST_F(SelectCommandTest, ReadsMatrixMarketFilesAlike) {
   char line[80];
   for (Index i = 0; i < 60; ++i) {
     for (Index j = 0; j < 40; ++j) {
-      std::snprintf(line, sizeof line, "%d %d %.17g\n", static_cast<int>(i + 1), static_cast<int>(j + 1),
-                    A(i, j));
+      std::snprintf(line, sizeof line, "%d %d %.17g\n", static_cast<int>(i + 1), static_cast<int>(j + 1), A(i, j));
       a_text += line;
     }
     std::snprintf(line, sizeof line, "%.17g\n", b[i]);
@@ -145,17 +142,14 @@ TEST_F(SelectCommandTest, KeepsWhatMustBeKeptAndChoosesAmongCandidates) {
   write("even.txt", "0\n2\n4\n6\n8\n10\n12\n14\n16\n18\n20\n");
   for (const std::string& selector : known_selectors()) {
     const Arguments size = selector == "all" ? Arguments{} : Arguments{"--points", "6"};
-    const json found = report(
-        job(with(size, {"--selector", selector, "--must-keep", "keep.txt", "--candidates", "even.txt"})));
+    const json found =
+        report(job(with(size, {"--selector", selector, "--must-keep", "keep.txt", "--candidates", "even.txt"})));
     EXPECT_THAT(indices(found), ::testing::IsSupersetOf({7, 30})) << selector;
-    for (const Index j : indices(found))
-      EXPECT_TRUE(j == 7 || j == 30 || (j % 2 == 0 && j <= 20)) << selector << j;
+    for (const Index j : indices(found)) EXPECT_TRUE(j == 7 || j == 30 || (j % 2 == 0 && j <= 20)) << selector << j;
     EXPECT_GT(found["points"], 2) << selector;
   }
   const json kept = report(job({"--must-keep", "keep.txt", "--points", "5"}));
-  EXPECT_EQ(
-      kept["weights"][std::find(kept["indices"].begin(), kept["indices"].end(), 7) - kept["indices"].begin()],
-      0);
+  EXPECT_EQ(kept["weights"][std::find(kept["indices"].begin(), kept["indices"].end(), 7) - kept["indices"].begin()], 0);
 }
 
 TEST_F(SelectCommandTest, ImprovesAnEarlierAnswer) {
@@ -164,9 +158,9 @@ TEST_F(SelectCommandTest, ImprovesAnEarlierAnswer) {
   for (const char* selector : {"nn-sp", "nn-htp", "greedy", "nn-omp", "nn-niht"}) {
     const json after = report(job({"--points", "12", "--selector", selector, "--warm-start", "before.json"}));
     EXPECT_LE(after["training_error"], before["training_error"].get<double>() * (1 + 1e-12)) << selector;
-    EXPECT_EQ(after["history"][0]["training_error"].get<double>() <=
-                  before["training_error"].get<double>() * (1 + 1e-9),
-              true)
+    EXPECT_EQ(
+        after["history"][0]["training_error"].get<double>() <= before["training_error"].get<double>() * (1 + 1e-9),
+        true)
         << selector;
   }
 }
@@ -195,20 +189,16 @@ TEST_F(SelectCommandTest, MeasuresTheErrorOnHeldOutRows) {
   const Vector b_held = A_held.rowwise().sum();
   write_npy("A_held.npy", A_held);
   write_npy("b_held.npy", b_held);
-  const json found =
-      report(job({"--points", "10", "--validate-matrix", "A_held.npy", "--validate-rhs", "b_held.npy"}));
+  const json found = report(job({"--points", "10", "--validate-matrix", "A_held.npy", "--validate-rhs", "b_held.npy"}));
   const double expected = residual(found, A_held, b_held).norm() / b_held.norm();
   EXPECT_NEAR(found["held_out_error"].get<double>(), expected, 1e-12);
   for (const json& step : found["history"]) EXPECT_TRUE(step["held_out_error"].is_number());
-  const json sums =
-      report({"select", "--matrix", "A.npy", "--points", "10", "--validate-matrix", "A_held.npy"});
-  EXPECT_NEAR(sums["held_out_error"].get<double>(), residual(sums, A_held, b_held).norm() / b_held.norm(),
-              1e-12);
+  const json sums = report({"select", "--matrix", "A.npy", "--points", "10", "--validate-matrix", "A_held.npy"});
+  EXPECT_NEAR(sums["held_out_error"].get<double>(), residual(sums, A_held, b_held).norm() / b_held.norm(), 1e-12);
 }
 
 TEST_F(SelectCommandTest, TrainsGreedyOnGroupsOfRows) {
-  const Arguments grouped =
-      job({"--points", "10", "--selector", "greedy", "--group-size", "6", "--train-groups", "2"});
+  const Arguments grouped = job({"--points", "10", "--selector", "greedy", "--group-size", "6", "--train-groups", "2"});
   const json some = report(grouped), again = report(grouped),
              all = report(job({"--points", "10", "--selector", "greedy"}));
   EXPECT_EQ(some["weights"], again["weights"]);
@@ -257,8 +247,7 @@ TEST_F(SelectCommandTest, RefusesBadInputInOneLineAndLeavesNothing) {
   expect_refusal(job(with(ten, {"--train-groups", "2"})), {"--train-groups", "greedy"});
 
   write("list.txt", "0\n40\n");
-  expect_refusal(job(with(ten, {"--candidates", "list.txt"})),
-                 {"list.txt:2: column 40 does not exist", "0 … 39"});
+  expect_refusal(job(with(ten, {"--candidates", "list.txt"})), {"list.txt:2: column 40 does not exist", "0 … 39"});
   expect_refusal(job(with(ten, {"--must-keep", "list.txt"})), {"list.txt:2"});
   write("list.txt", "1\n2\nthree\n");
   expect_refusal(job(with(ten, {"--must-keep", "list.txt"})), {"list.txt:3: expected a column index"});
@@ -288,21 +277,19 @@ TEST_F(SelectCommandTest, RefusesBadInputInOneLineAndLeavesNothing) {
   expect_refusal({"select", "--matrix", "bad.npy", "--points", "10"}, {"bad.npy", "row 4, column 5", "nan"});
   b[17] = INFINITY;
   write_npy("bad.npy", b);
-  expect_refusal({"select", "--matrix", "A.npy", "--rhs", "bad.npy", "--points", "10"},
-                 {"bad.npy", "row 17", "inf"});
+  expect_refusal({"select", "--matrix", "A.npy", "--rhs", "bad.npy", "--points", "10"}, {"bad.npy", "row 17", "inf"});
   write("bad.npy", read("A.npy").substr(0, 5000));
-  expect_refusal({"select", "--matrix", "bad.npy", "--points", "10"},
-                 {"bad.npy, byte 128: the file ends before"});
+  expect_refusal({"select", "--matrix", "bad.npy", "--points", "10"}, {"bad.npy, byte 128: the file ends before"});
 
-  EXPECT_EQ(files(), (std::vector<std::string>{"A.npy", "b.npy", "bad.npy", "list.txt", "narrow.npy",
-                                               "old.json", "short.npy"}));
+  EXPECT_EQ(files(),
+            (std::vector<std::string>{"A.npy", "b.npy", "bad.npy", "list.txt", "narrow.npy", "old.json", "short.npy"}));
 }
 
 TEST_F(SelectCommandTest, LeavesNothingWhenASignalEndsIt) {
   write_npy("large.npy", uniform(800, 4000, 1));
   const Outcome outcome = run_supple_until_signal(
-      {"select", "--matrix", "large.npy", "--points", "600", "--selector", "nn-omp", "--json", "report.json"},
-      folder, SIGINT, 300);
+      {"select", "--matrix", "large.npy", "--points", "600", "--selector", "nn-omp", "--json", "report.json"}, folder,
+      SIGINT, 300);
   EXPECT_EQ(outcome.exit_code, 128 + SIGINT);
   EXPECT_EQ(files(), (std::vector<std::string>{"A.npy", "b.npy", "large.npy"}));
 }

@@ -55,8 +55,8 @@ TEST_F(SimulateCommandTest, WritesWhatItReports) {
   EXPECT_NEAR(mean, report["mean_iterations"].get<double>(), 1e-9);
   double largest = 0;
   for (Index k = 0; k <= steps; ++k)
-    largest = std::max(largest, std::hypot(tracked.numbers("ux80")[k], tracked.numbers("uy80")[k],
-                                           tracked.numbers("uz80")[k]));
+    largest = std::max(largest,
+                       std::hypot(tracked.numbers("ux80")[k], tracked.numbers("uy80")[k], tracked.numbers("uz80")[k]));
   EXPECT_NEAR(largest, report["tracked"][1]["largest_displacement"].get<double>(), 1e-12);
 
   const std::string list = read("run/series.pvd");
@@ -76,8 +76,7 @@ TEST_F(SimulateCommandTest, ConservesEnergyAsLoadsGiveIt) {
     arguments.insert(arguments.end(), how.begin(), how.end());
     (void)report(arguments);
     const CsvTable energies = table("run/energies.csv");
-    const Vector total = energies.numbers("kinetic") + energies.numbers("elastic"),
-                 work = energies.numbers("work");
+    const Vector total = energies.numbers("kinetic") + energies.numbers("elastic"), work = energies.numbers("work");
     // average acceleration keeps energy exactly for linear forces, and to second order in the step for others
     EXPECT_LT((total - work).cwiseAbs().maxCoeff(), 0.02 * work.maxCoeff());
     EXPECT_GT(work.maxCoeff(), 0);
@@ -88,8 +87,7 @@ TEST_F(SimulateCommandTest, ConservesEnergyAsLoadsGiveIt) {
 /// A free body under gravity: Newmark's average acceleration is exact for constant accelerations.
 TEST_F(SimulateCommandTest, LetsFreeObjectsFall) {
   reduce_ball();
-  write("fall.json",
-        R"({"duration": 0.5, "step": "10 ms", "gravity": [0, -9.81, 0], "output": {"track": [3]}})");
+  write("fall.json", R"({"duration": 0.5, "step": "10 ms", "gravity": [0, -9.81, 0], "output": {"track": [3]}})");
   for (const Arguments& how : {Arguments{}, Arguments{"--full"}}) {
     Arguments arguments{"simulate", "ball.supple", "--scene", "fall.json", "-o", "run"};
     arguments.insert(arguments.end(), how.begin(), how.end());
@@ -120,8 +118,7 @@ TEST_F(SimulateCommandTest, AcceptsEachWayToNameThings) {
   reduce_bar();
   const auto displacement = [&](const std::string& scene) -> Vector {
     write("scene.json", scene);
-    (void)report({"simulate", "bar.supple", "--scene", "scene.json", "-o", "run", "--frames", "none",
-                  "--track", "80"});
+    (void)report({"simulate", "bar.supple", "--scene", "scene.json", "-o", "run", "--frames", "none", "--track", "80"});
     return table("run/tracked.csv").numbers("uy80");
   };
   const std::string start = R"({"duration": 0.2, "step": 0.01, )";
@@ -139,8 +136,8 @@ TEST_F(SimulateCommandTest, AcceptsEachWayToNameThings) {
   // node 80 is the corner (1, 0.25, 0.25) at rest
   const Vector to_target =
       displacement(start + R"("springs": [{"node": 80, "stiffness": 50, "target": [1, 0.35, 0.25]}]})");
-  const Vector by_displacement = displacement(
-      start + R"("springs": [{"node": 80, "stiffness": "0.05 N/mm", "displacement": [0, 0.1, 0]}]})");
+  const Vector by_displacement =
+      displacement(start + R"("springs": [{"node": 80, "stiffness": "0.05 N/mm", "displacement": [0, 0.1, 0]}]})");
   const Vector along_path = displacement(
       start + R"("springs": [{"node": 80, "stiffness": 50, "path": [{"time": 0, "displacement": [0, 0.1, 0]},
                                                                    {"time": 1, "displacement": [0, 0.1, 0]}]}]})");
@@ -179,10 +176,8 @@ TEST_F(SimulateCommandTest, ComparesTrajectories) {
   EXPECT_NEAR(report["until"].get<double>(), 0.5, 0.02);
   const CsvTable errors = table("comparison/errors.csv");
   EXPECT_EQ(errors.num_rows(), report["frames"].get<Index>());
-  EXPECT_NEAR(errors.numbers("position_error").maxCoeff(), report["position_error"]["largest"].get<double>(),
-              1e-12);
-  EXPECT_NEAR(errors.numbers("largest_distance").maxCoeff(),
-              report["largest_distance"]["metres"].get<double>(), 1e-12);
+  EXPECT_NEAR(errors.numbers("position_error").maxCoeff(), report["position_error"]["largest"].get<double>(), 1e-12);
+  EXPECT_NEAR(errors.numbers("largest_distance").maxCoeff(), report["largest_distance"]["metres"].get<double>(), 1e-12);
   EXPECT_GT(read_png(folder / "comparison/errors.png").width, 300);
   EXPECT_GT(read_png(folder / "comparison/comparison.png").width, 600);
 
@@ -247,7 +242,8 @@ TEST_F(SimulateCommandTest, StopsWithAnErrorWhenTheMotionIsNotFinite) {
 TEST_F(SimulateCommandTest, KeepsItsReportsWhenTheFirstStepIsNotFinite) {
   reduce_bar();
   write("burst.json", R"({"duration": 1, "step": 0.05, "forces": [{"node": 80, "force": [1e250, 0, 0]}]})");
-  const Outcome outcome = supple({"simulate", "bar.supple", "--scene", "burst.json", "-o", "run", "--json", "report.json"});
+  const Outcome outcome =
+      supple({"simulate", "bar.supple", "--scene", "burst.json", "-o", "run", "--json", "report.json"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("step 1 "), HasSubstr("finite")));
   EXPECT_EQ(json::parse(read("report.json"))["status"], "not-finite");

@@ -95,8 +95,7 @@ nlohmann::json SuppleProcess::report(Arguments arguments) const {
   return json;
 }
 
-void SuppleProcess::expect_refusal(const Arguments& arguments, const std::vector<std::string>& parts,
-                                   int code) const {
+void SuppleProcess::expect_refusal(const Arguments& arguments, const std::vector<std::string>& parts, int code) const {
   const Outcome outcome = supple(arguments);
   EXPECT_EQ(outcome.exit_code, code) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;

@@ -72,16 +72,14 @@ TEST_F(OutputFileTest, LargeFilesAreReadBackWhole) {
     write_file(path, text);
     EXPECT_EQ(read_file(path), text);
   }
-  EXPECT_THAT([&] { read_file(folder); },
-              testing::ThrowsMessage<InputError>(testing::HasSubstr("Is a directory")));
+  EXPECT_THAT([&] { read_file(folder); }, testing::ThrowsMessage<InputError>(testing::HasSubstr("Is a directory")));
 }
 
 TEST_F(OutputFileTest, SaysWhyAFileCannotBeWritten) {
   using testing::HasSubstr;
   using testing::ThrowsMessage;
   EXPECT_THAT([&] { write_file(folder, ""); }, ThrowsMessage<InputError>(HasSubstr("it is a folder")));
-  EXPECT_THAT([&] { write_file(folder / "no" / "file", ""); },
-              ThrowsMessage<InputError>(HasSubstr("No such file")));
+  EXPECT_THAT([&] { write_file(folder / "no" / "file", ""); }, ThrowsMessage<InputError>(HasSubstr("No such file")));
   EXPECT_THAT([&] { write_file("", ""); }, ThrowsMessage<InputError>(HasSubstr("names no file")));
 }
 

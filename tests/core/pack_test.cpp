@@ -92,8 +92,7 @@ TEST(Pack, FunctionsAreThoseOfEachLane) {
 }
 
 TEST(Pack, AnglesAreThoseOfTheStandardLibraryToTheLastPlaces) {
-  constexpr double tolerance =
-      3 * std::numeric_limits<double>::epsilon();  // 2.5 units, and one of std::atan2
+  constexpr double tolerance = 3 * std::numeric_limits<double>::epsilon();  // 2.5 units, and one of std::atan2
   Random random(4);
   for (int k = 0; k < 20000; ++k) {
     const double scale = std::exp(60 * (random.uniform() - 0.5));

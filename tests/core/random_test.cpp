@@ -54,8 +54,7 @@ TEST(Random, NormalHasTheMomentsOfTheNormalDistribution) {
   }
   // Four standard deviations: Var xᵏ = E x²ᵏ − (E xᵏ)² = 1, 2, 15, 96.
   const double expected[] = {0, 1, 0, 3}, variance[] = {1, 2, 15, 96};
-  for (int k = 0; k < 4; ++k)
-    EXPECT_NEAR(moments[k] / count, expected[k], 4 * std::sqrt(variance[k] / count));
+  for (int k = 0; k < 4; ++k) EXPECT_NEAR(moments[k] / count, expected[k], 4 * std::sqrt(variance[k] / count));
 }
 
 TEST(Random, BelowReachesEveryNumberAboutEquallyOften) {

@@ -41,9 +41,8 @@ std::vector<Formula> formulas() {
       formula("atan2", [](auto x, auto y, auto z) { return atan2(x - 0.9, y) * z; }),
       formula("min and max", [](auto x, auto y, auto z) { return min(x, y + 1.0) * max(y, z - 2.0); }),
       formula("pow", [](auto x, auto y, auto z) { return pow(x, -2.5) * pow(y + z, 1.5); }),
-      formula("branch", [](auto x, auto y, auto z) {
-        return where_positive(x - 0.5, x * x * y, z * y) + where_positive(-x, y, z);
-      }),
+      formula("branch", [](auto x, auto y,
+                           auto z) { return where_positive(x - 0.5, x * x * y, z * y) + where_positive(-x, y, z); }),
   };
 }
 

@@ -90,8 +90,7 @@ TEST_F(TensorFileTest, ReturnsWhatWasWritten) {
 
 TEST_F(TensorFileTest, KeepsEveryBitOfSpecialNumbers) {
   using Limits = std::numeric_limits<double>;
-  const std::vector<double> special{Limits::quiet_NaN(), Limits::infinity(), -0.0, Limits::denorm_min(),
-                                    Limits::max()};
+  const std::vector<double> special{Limits::quiet_NaN(), Limits::infinity(), -0.0, Limits::denorm_min(), Limits::max()};
   TensorFileWriter writer;
   writer.add("special", special);
   writer.write(path);
@@ -140,36 +139,32 @@ TEST_F(TensorFileTest, WritingTwiceGivesTheSameBytes) {
 }
 
 TEST_F(TensorFileTest, IsReadByAnIndependentReaderOfThePublishedLayout) {
-  if (std::system("python3 -c 'import json, struct' 2>/dev/null") != 0)
-    GTEST_SKIP() << "python3 is not installed";
+  if (std::system("python3 -c 'import json, struct' 2>/dev/null") != 0) GTEST_SKIP() << "python3 is not installed";
   sample().write(path);
-  const std::string command =
-      "python3 '" SUPPLE_TEST_SCRIPTS "/read_safetensors.py' '" + path.string() + "' 2>&1";
+  const std::string command = "python3 '" SUPPLE_TEST_SCRIPTS "/read_safetensors.py' '" + path.string() + "' 2>&1";
   FILE* pipe = ::popen(command.c_str(), "r");
   ASSERT_NE(pipe, nullptr);
   std::string output;
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) output += static_cast<char>(c);
   EXPECT_EQ(::pclose(pipe), 0) << output;
-  EXPECT_THAT(output, AllOf(HasSubstr("basis F64 5x3 0 31.5"), HasSubstr("omega F64 7 0 10.5"),
-                            HasSubstr("tets I64 2x4 0 16.0"), HasSubstr("fixed I32 3 0 8.0"),
-                            HasSubstr("flags U8 5 0 270.0"), HasSubstr("none F64 0 0 0.0"),
-                            HasSubstr("colours F32 2x2x2 0 28.5")));
+  EXPECT_THAT(output,
+              AllOf(HasSubstr("basis F64 5x3 0 31.5"), HasSubstr("omega F64 7 0 10.5"),
+                    HasSubstr("tets I64 2x4 0 16.0"), HasSubstr("fixed I32 3 0 8.0"), HasSubstr("flags U8 5 0 270.0"),
+                    HasSubstr("none F64 0 0 0.0"), HasSubstr("colours F32 2x2x2 0 28.5")));
 }
 
 TEST_F(TensorFileTest, AccessNamesFileArrayAndExpectation) {
   sample().write(path);
   const TensorFile file(path);
-  EXPECT_THAT(
-      [&] { file.matrix("bases"); },
-      ThrowsMessage<InputError>(AllOf(HasSubstr(path.string()), HasSubstr("expected an array 'bases'"))));
+  EXPECT_THAT([&] { file.matrix("bases"); },
+              ThrowsMessage<InputError>(AllOf(HasSubstr(path.string()), HasSubstr("expected an array 'bases'"))));
   EXPECT_THAT([&] { file.integers("basis"); },
               ThrowsMessage<InputError>(HasSubstr("array 'basis' has type F64, expected I64")));
   EXPECT_THAT([&] { file.matrix("basis", TensorFile::any, 4); },
               ThrowsMessage<InputError>(HasSubstr("array 'basis' has shape [5, 3], expected [any, 4]")));
   EXPECT_THAT([&] { file.vector("basis"); },
               ThrowsMessage<InputError>(HasSubstr("array 'basis' has shape [5, 3], expected [any]")));
-  EXPECT_THAT([&] { file.metadata("author"); },
-              ThrowsMessage<InputError>(HasSubstr("expected metadata 'author'")));
+  EXPECT_THAT([&] { file.metadata("author"); }, ThrowsMessage<InputError>(HasSubstr("expected metadata 'author'")));
 }
 
 TEST_F(TensorFileTest, WriterRefusesWhatItCouldNotReadBack) {
@@ -216,8 +211,7 @@ TEST_F(TensorFileTest, RefusesEveryTruncation) {
   sample().write(path);
   const std::string bytes = read_all(path);
   for (std::size_t size = 0; size < bytes.size(); ++size)
-    ASSERT_NE(refusal(bytes.substr(0, size), Checksums::Skip), "")
-        << size << " of " << bytes.size() << " bytes";
+    ASSERT_NE(refusal(bytes.substr(0, size), Checksums::Skip), "") << size << " of " << bytes.size() << " bytes";
   EXPECT_NE(refusal(bytes + '\0', Checksums::Skip), "");
 }
 
@@ -256,9 +250,8 @@ TEST_F(TensorFileTest, RefusesForeignNewerAndEditedHeaders) {
                                     header["__metadata__"] = {{"format", "pt"}};
                                   })),
               HasSubstr("not written by Supple"));
-  EXPECT_THAT(
-      refusal(with_header(bytes, [](auto& header) { header["__metadata__"]["supple.layout"] = "2"; })),
-      AllOf(HasSubstr("layout '2'"), HasSubstr("reads layout 1")));
+  EXPECT_THAT(refusal(with_header(bytes, [](auto& header) { header["__metadata__"]["supple.layout"] = "2"; })),
+              AllOf(HasSubstr("layout '2'"), HasSubstr("reads layout 1")));
   EXPECT_THAT(refusal(with_header(bytes, [](auto& header) { header["__metadata__"]["format"] = "other"; })),
               HasSubstr("header does not match its checksum"));
   EXPECT_THAT(refusal(with_header(bytes,
@@ -266,10 +259,8 @@ TEST_F(TensorFileTest, RefusesForeignNewerAndEditedHeaders) {
                                     header["basis"]["shape"] = {3, 5};
                                   })),
               HasSubstr("header does not match its checksum"));
-  EXPECT_THAT(refusal(std::string("\x11\0\0\0\0\0\0\0{\"a\":{},\"a\":{}}  ", 25)),
-              HasSubstr("'a' appears twice"));
-  EXPECT_THAT(refusal(std::string("\xff\xff\xff\xff\xff\xff\xff\x7f{}", 10)),
-              HasSubstr("not a safetensors file"));
+  EXPECT_THAT(refusal(std::string("\x11\0\0\0\0\0\0\0{\"a\":{},\"a\":{}}  ", 25)), HasSubstr("'a' appears twice"));
+  EXPECT_THAT(refusal(std::string("\xff\xff\xff\xff\xff\xff\xff\x7f{}", 10)), HasSubstr("not a safetensors file"));
 }
 
 TEST_F(TensorFileTest, SkippingChecksumsOpensADamagedArray) {
@@ -287,8 +278,8 @@ TEST_F(TensorFileTest, SeededMutationsAreRefusedAndNeverCrash) {
   sample().write(path);
   const std::string bytes = read_all(path);
   Random random(2024);
-  constexpr std::string_view pieces[] = {
-      "[", "]", "{", "}", "\"", ",", "-1", "1e999", "18446744073709551615", "null", "9"};
+  constexpr std::string_view pieces[] = {"[",    "]", "{", "}", "\"", ",", "-1", "1e999", "18446744073709551615",
+                                         "null", "9"};
   int refused = 0;
   constexpr int rounds = 3000;
   for (int round = 0; round < rounds; ++round) {
@@ -307,12 +298,10 @@ TEST_F(TensorFileTest, SeededMutationsAreRefusedAndNeverCrash) {
           break;
         default:
           changed.replace(
-              at, 1,
-              changed.substr(static_cast<std::size_t>(random.below(static_cast<Index>(changed.size()))), 9));
+              at, 1, changed.substr(static_cast<std::size_t>(random.below(static_cast<Index>(changed.size()))), 9));
       }
     }
-    if (changed != bytes)
-      refused += refusal(changed, random.below(2) ? Checksums::Verify : Checksums::Skip) != "";
+    if (changed != bytes) refused += refusal(changed, random.below(2) ? Checksums::Verify : Checksums::Skip) != "";
   }
   // Without checksums a changed array may pass; it must never pass unnoticed in the header, nor crash.
   EXPECT_GT(refused, rounds * 9 / 10);

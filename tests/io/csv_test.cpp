@@ -86,8 +86,7 @@ TEST_F(Csv, ErrorsNameFileLineAndExpectation) {
   EXPECT_THAT([&] { parse("a,b\n\"1\"2,3\n"); }, refusal(":2: expected ',' or the end of the line"));
   EXPECT_THAT([&] { parse("a,a\n"); }, refusal(":1: two columns have the name 'a'"));
   EXPECT_THAT([&] { parse(""); }, refusal("is empty, expected a header"));
-  EXPECT_THAT([&] { parse("a [m],b\n1,2\n3,four\n").numbers("b"); },
-              refusal(":3: 'b' is 'four', expected a number"));
+  EXPECT_THAT([&] { parse("a [m],b\n1,2\n3,four\n").numbers("b"); }, refusal(":3: 'b' is 'four', expected a number"));
   EXPECT_THAT([&] { parse("a [m],b\n").numbers("c"); }, refusal("expected a column 'c'; there are 'a', 'b'"));
   EXPECT_THAT([&] { read_csv(path / "none"); }, ThrowsMessage<InputError>(HasSubstr("cannot be read")));
   EXPECT_THROW(CsvTable(std::vector<CsvTable::Column>()), std::invalid_argument);

@@ -86,8 +86,7 @@ std::string damaged(std::string bytes, Random& random) {
         bytes.resize(at);
         break;
       case 5:
-        bytes.replace(at, std::min(length, Index{8}),
-                      tokens[random.below(static_cast<Index>(tokens.size()))]);
+        bytes.replace(at, std::min(length, Index{8}), tokens[random.below(static_cast<Index>(tokens.size()))]);
         break;
       case 6:
         bytes.insert(at, tokens[random.below(static_cast<Index>(tokens.size()))]);

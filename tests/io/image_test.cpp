@@ -103,8 +103,7 @@ TEST_F(ImageTest, EveryPrintableCharacterLooksDifferent) {
 }
 
 TEST_F(ImageTest, DigitsAreEquallyWide) {
-  for (const char* digits : {"00", "11", "47", "83"})
-    EXPECT_FLOAT_EQ(lay_out(digits).width, lay_out("22").width);
+  for (const char* digits : {"00", "11", "47", "83"}) EXPECT_FLOAT_EQ(lay_out(digits).width, lay_out("22").width);
 }
 
 TEST_F(ImageTest, BrokenUtf8AndTextBeyondTheEdgesAreHarmless) {

@@ -120,17 +120,14 @@ TEST(JsonFields, UnknownKeysAreRefusedWithTheNearestKnownOne) {
     std::string text = scene;
     return refusal(text.replace(text.find(from), from.size(), to), read_scene);
   };
-  EXPECT_EQ(with("\"damped\"", "\"dampde\""),
-            "scene.json: /dampde is not known here; did you mean \"damped\"?");
+  EXPECT_EQ(with("\"damped\"", "\"dampde\""), "scene.json: /dampde is not known here; did you mean \"damped\"?");
   EXPECT_EQ(with("{\"node\": 0", "{\"stifness\": 1, \"node\": 0"),
             "scene.json: /springs/0/stifness is not known here; did you mean \"stiffness\"?");
-  EXPECT_EQ(with("{\"node\": 0", "{\"a/b~\": 1, \"node\": 0"),
-            "scene.json: /springs/0/a~1b~0 is not known here");
+  EXPECT_EQ(with("{\"node\": 0", "{\"a/b~\": 1, \"node\": 0"), "scene.json: /springs/0/a~1b~0 is not known here");
 }
 
 TEST(JsonFields, SyntaxErrorsComeWithLineAndColumn) {
-  EXPECT_THAT(refusal("{\n  \"a\": 1,\n  \"b\" 2\n}", read_scene),
-              StartsWith("scene.json:3:7: syntax error"));
+  EXPECT_THAT(refusal("{\n  \"a\": 1,\n  \"b\" 2\n}", read_scene), StartsWith("scene.json:3:7: syntax error"));
   EXPECT_THAT(refusal("{\"a\": [1, 2}", read_scene), StartsWith("scene.json:1:12: syntax error"));
   EXPECT_THAT(refusal("", read_scene), StartsWith("scene.json:1:1: syntax error"));
   EXPECT_EQ(refusal("{\n\"a\": 1e999}", read_scene), "scene.json:2:6: the number 1e999 is too large");
@@ -138,11 +135,9 @@ TEST(JsonFields, SyntaxErrorsComeWithLineAndColumn) {
             "scene.json: the key \"b\" appears twice in one object");
   EXPECT_EQ(refusal(std::string("{}\0x", 4), read_scene), "scene.json:1:3: a NUL byte, expected text");
   EXPECT_NE(refusal("{\"a\": \"\xff\"}", read_scene), "");
-  EXPECT_THAT(
-      [] { JsonFields::read("/nowhere/scene.json"); },
-      ThrowsMessage<InputError>(StrEq("/nowhere/scene.json: cannot be read: No such file or directory")));
-  EXPECT_THAT([] { JsonFields::read("/tmp"); },
-              ThrowsMessage<InputError>(StartsWith("/tmp: cannot be read")));
+  EXPECT_THAT([] { JsonFields::read("/nowhere/scene.json"); },
+              ThrowsMessage<InputError>(StrEq("/nowhere/scene.json: cannot be read: No such file or directory")));
+  EXPECT_THAT([] { JsonFields::read("/tmp"); }, ThrowsMessage<InputError>(StartsWith("/tmp: cannot be read")));
 }
 
 TEST(JsonFields, VeryDeepNestingIsAnErrorNotACrash) {

@@ -53,8 +53,8 @@ std::string npy_header(int version, std::string text) {
 }
 
 std::string npy_header(int version, const std::string& type, bool columns_first, const std::string& shape) {
-  return npy_header(version, "{'descr': '" + type + "', 'fortran_order': " +
-                                 (columns_first ? "True" : "False") + ", 'shape': " + shape + ", }");
+  return npy_header(version, "{'descr': '" + type + "', 'fortran_order': " + (columns_first ? "True" : "False") +
+                                 ", 'shape': " + shape + ", }");
 }
 
 /// A as NumPy saves it.
@@ -78,8 +78,7 @@ struct MatrixFile : testing::Test {
   Vector vector(const std::string& bytes) const { return read_vector(write(bytes)); }
   /// Demands an InputError that names the file and these words.
   void expect_refusal(const std::string& bytes, const std::string& expected) const {
-    EXPECT_THAT([&] { matrix(bytes); },
-                ThrowsMessage<InputError>(AllOf(HasSubstr(path.string()), HasSubstr(expected))))
+    EXPECT_THAT([&] { matrix(bytes); }, ThrowsMessage<InputError>(AllOf(HasSubstr(path.string()), HasSubstr(expected))))
         << bytes.substr(0, 200);
   }
 
@@ -127,11 +126,9 @@ TEST_F(NpyFile, KeepsEveryBitOfExtremeNumbers) {
 
 TEST_F(NpyFile, IsTransposedInPiecesOfAnyShape) {
   // several bands of rows, whose height is no multiple of a tile
-  for (const auto& [rows, cols] :
-       {std::pair<Index, Index>{3000, 701}, {2, 1'100'000}, {1'100'000, 2}, {37, 60'000}}) {
-    const Matrix A = Matrix::NullaryExpr(rows, cols, [](Index i, Index j) {
-      return static_cast<double>(i % 1009) + 1e4 * static_cast<double>(j);
-    });
+  for (const auto& [rows, cols] : {std::pair<Index, Index>{3000, 701}, {2, 1'100'000}, {1'100'000, 2}, {37, 60'000}}) {
+    const Matrix A = Matrix::NullaryExpr(
+        rows, cols, [](Index i, Index j) { return static_cast<double>(i % 1009) + 1e4 * static_cast<double>(j); });
     EXPECT_EQ(matrix(npy<double>(A, "<f8", false)), A) << rows << " x " << cols;
     EXPECT_EQ(matrix(npy<float>(A, ">f4", true)), A.cast<float>().cast<double>()) << rows << " x " << cols;
   }
@@ -169,8 +166,7 @@ TEST_F(NpyFile, IsRefusedByByteAndExpectation) {
   for (const char* type :
        {"<c8", "<c16", "<f2", "<f16", "<U4", "|S8", "|O", "<M8[s]", "|V8", "f8", "|f8", "<i3", "<b8", ""})
     refuse_type(type);
-  refuse_header("{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (2, 2)}",
-                "not a structured type");
+  refuse_header("{'descr': [('x', '<f8')], 'fortran_order': False, 'shape': (2, 2)}", "not a structured type");
   refuse_header("{'descr': '<f8', 'fortran_order': 0, 'shape': (2, 2)}", "neither True nor False");
   refuse_header("{'descr': '<f8', 'fortran_order': False}", "the header has no 'shape'");
   refuse_header("{'descr': '<f8', 'shape': (2, 2)}", "the header has no 'fortran_order'");
@@ -178,15 +174,12 @@ TEST_F(NpyFile, IsRefusedByByteAndExpectation) {
   refuse_header("{'descr': '<f8', 'descr': '<f8'}", "'descr' appears twice");
   refuse_header("{'dtype': '<f8'}", "byte 11: expected 'descr', 'fortran_order' or 'shape'");
   refuse_header("{'descr': '<f8'; }", "expected '}'");
-  refuse_header("{'descr': '<f8', 'fortran_order': False, 'shape': (2, 2), } 1",
-                "expected nothing but spaces");
+  refuse_header("{'descr': '<f8', 'fortran_order': False, 'shape': (2, 2), } 1", "expected nothing but spaces");
   refuse_header("{'descr", "expected a closing quotation mark");
   refuse_header("", "byte 64: expected '{'");
   for (const char* shape : {"()", "(1, 2, 2)"})
-    expect_refusal(npy_header(1, "<f8", false, shape) + numbers,
-                   "expected 1 (a vector) or 2 (rows, columns)");
-  for (const char* shape :
-       {"(-2, 2)", "(2.0, 2)", "(a)", "(2, 2", "2", "(99999999999999999999, 1)", "(2,, 2)"})
+    expect_refusal(npy_header(1, "<f8", false, shape) + numbers, "expected 1 (a vector) or 2 (rows, columns)");
+  for (const char* shape : {"(-2, 2)", "(2.0, 2)", "(a)", "(2, 2", "2", "(99999999999999999999, 1)", "(2,, 2)"})
     expect_refusal(npy_header(1, "<f8", false, shape) + numbers, ": expected ");
   for (const char* shape : {"(0,)", "(0, 4)", "(4, 0)"})
     expect_refusal(npy_header(1, "<f8", false, shape), "expected at least one");
@@ -197,14 +190,12 @@ TEST_F(NpyFile, IsRefusedByByteAndExpectation) {
 }
 
 TEST_F(NpyFile, WithALyingHeaderIsRefusedBeforeAnythingIsAllocated) {
-  for (const char* shape :
-       {"(3, 2)", "(1000000000, 1000000000)", "(9223372036854775807, 9223372036854775807)",
-        "(9223372036854775807, 2)", "(2, 4611686018427387904)", "(9223372036854775807,)"})
+  for (const char* shape : {"(3, 2)", "(1000000000, 1000000000)", "(9223372036854775807, 9223372036854775807)",
+                            "(9223372036854775807, 2)", "(2, 4611686018427387904)", "(9223372036854775807,)"})
     expect_refusal(npy_header(2, "<f8", false, shape) + std::string(32, '\0'), "the file ends before its");
   std::string bytes = "\x93NUMPY" + std::string("\2\0\xff\xff\xff\xff{", 7);
   expect_refusal(bytes, "announces a header of 4294967295 bytes, but the file ends before that");
-  expect_refusal("\x93NUMPY" + std::string("\2\0\1\0\1\0", 6) + std::string(70000, ' '),
-                 "expected at most 65536");
+  expect_refusal("\x93NUMPY" + std::string("\2\0\1\0\1\0", 6) + std::string(70000, ' '), "expected at most 65536");
 }
 
 TEST_F(MatrixFile, NamesRowAndColumnOfWhatIsNotFinite) {
@@ -214,10 +205,8 @@ TEST_F(MatrixFile, NamesRowAndColumnOfWhatIsNotFinite) {
                  "the entry in row 2, column 1 (from 0) is nan, expected a finite number");
   A(2, 1) = -infinity;
   expect_refusal(npy<float>(A, ">f4", true), "row 2, column 1 (from 0) is -inf");
-  expect_refusal("%%MatrixMarket matrix array real general\n2 1\n1\n1e999\n",
-                 "row 1, column 0 (from 0) is inf");
-  expect_refusal("%%MatrixMarket matrix coordinate real general\n2 2 1\n2 1 nan\n",
-                 "row 1, column 0 (from 0) is nan");
+  expect_refusal("%%MatrixMarket matrix array real general\n2 1\n1\n1e999\n", "row 1, column 0 (from 0) is inf");
+  expect_refusal("%%MatrixMarket matrix coordinate real general\n2 2 1\n2 1 nan\n", "row 1, column 0 (from 0) is nan");
 }
 
 TEST_F(MatrixFile, ComesFromAPipeToo) {
@@ -231,8 +220,7 @@ TEST_F(MatrixFile, ComesFromAPipeToo) {
 
 TEST_F(MatrixFile, ThatIsNoneIsRefused) {
   EXPECT_THAT([&] { read_matrix(path / "none"); }, ThrowsMessage<InputError>(HasSubstr("cannot be read")));
-  EXPECT_THAT([&] { read_vector(fs::temp_directory_path()); },
-              ThrowsMessage<InputError>(HasSubstr("is a folder")));
+  EXPECT_THAT([&] { read_vector(fs::temp_directory_path()); }, ThrowsMessage<InputError>(HasSubstr("is a folder")));
 }
 
 TEST_F(MatrixFile, IsToldFromOthersByItsBeginning) {
@@ -250,10 +238,8 @@ TEST_F(MtxFile, IsReadAsArray) {
             (Matrix(2, 2) << 1, 2, 2, 3).finished());
   EXPECT_EQ(matrix("%%MatrixMarket matrix array real skew-symmetric\n3 3\n1\n2\n3\n"),
             (Matrix(3, 3) << 0, -1, -2, 1, 0, -3, 2, 3, 0).finished());
-  EXPECT_THAT(vector("%%MatrixMarket matrix array real general\n3 1\n1\n2\n3\n"),
-              testing::ElementsAre(1, 2, 3));
-  EXPECT_THAT(vector("%%MatrixMarket matrix array real general\n1 3\n1\n2\n3\n"),
-              testing::ElementsAre(1, 2, 3));
+  EXPECT_THAT(vector("%%MatrixMarket matrix array real general\n3 1\n1\n2\n3\n"), testing::ElementsAre(1, 2, 3));
+  EXPECT_THAT(vector("%%MatrixMarket matrix array real general\n1 3\n1\n2\n3\n"), testing::ElementsAre(1, 2, 3));
 }
 
 TEST_F(MtxFile, IsReadAsCoordinates) {
@@ -277,14 +263,12 @@ TEST_F(MtxFile, IsRefusedByLineAndExpectation) {
                     symmetric = "%%MatrixMarket matrix coordinate real symmetric\n";
   expect_refusal("%%MatrixMarket matrix array complex general\n1 1\n1 1\n",
                  ":1: word 4 of the first line is \"complex\", expected real or integer or pattern");
-  expect_refusal("%%MatrixMarket matrix coordinate real hermitian\n",
-                 "word 5 of the first line is \"hermitian\"");
+  expect_refusal("%%MatrixMarket matrix coordinate real hermitian\n", "word 5 of the first line is \"hermitian\"");
   expect_refusal("%%MatrixMarket vector array real general\n", "word 2 of the first line is \"vector\"");
   expect_refusal("%%MatrixMarket matrix dense real general\n", "word 3 of the first line is \"dense\"");
   expect_refusal("%%MatrixMarket matrix array real\n1 1\n1\n", "word 5 of the first line is missing");
   expect_refusal("%%MatrixMarket matrix array pattern general\n1 1\n", ":1: an array cannot be a pattern");
-  expect_refusal("%%MatrixMarket matrix coordinate pattern skew-symmetric\n",
-                 ":1: a pattern cannot be skew-symmetric");
+  expect_refusal("%%MatrixMarket matrix coordinate pattern skew-symmetric\n", ":1: a pattern cannot be skew-symmetric");
   expect_refusal("%%MatrixMarket matrix array real general 7\n", ":1: the first line has more than 5 words");
   expect_refusal("%%MatrixMarket", "word 2 of the first line is missing");
   expect_refusal(array, ":2: expected the number of rows");
@@ -305,21 +289,18 @@ TEST_F(MtxFile, IsRefusedByLineAndExpectation) {
   expect_refusal(coordinate + "2 2 1\n1 1\n     ", ":3: expected a number, the line ends");
   expect_refusal(coordinate + "2 2 1\n1 1 1\n2 2 2\n", ":4: expected the end of the file after all entries");
   expect_refusal(symmetric + "2 2 1\n1 2 5\n", ":3: entry (1, 2) is not below the diagonal");
-  expect_refusal("%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n2 2 5\n",
-                 "entry (2, 2) is not below");
+  expect_refusal("%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n2 2 5\n", "entry (2, 2) is not below");
 }
 
 TEST_F(MtxFile, WithALyingHeaderIsRefusedBeforeAnythingIsAllocated) {
-  const std::string array = "%%MatrixMarket matrix array real ",
-                    coordinate = "%%MatrixMarket matrix coordinate real ";
+  const std::string array = "%%MatrixMarket matrix array real ", coordinate = "%%MatrixMarket matrix coordinate real ";
   expect_refusal(array + "general\n1000000 1000000\n1\n", "cannot hold them");
   expect_refusal(array + "general\n9223372036854775807 1\n1\n", "cannot hold them");
   expect_refusal(array + "general\n1 9223372036854775807\n1\n", "cannot hold them");
   expect_refusal(array + "symmetric\n4000000000 4000000000\n1\n", "cannot hold them");
   expect_refusal(coordinate + "general\n5 5 9223372036854775807\n1 1 1\n", "cannot hold them");
   expect_refusal(coordinate + "general\n5 5 -1\n", "the number of entries is negative");
-  expect_refusal(coordinate + "general\n1000000000 1000000000 1\n1 1 1\n",
-                 ":2: a matrix of 1000000000 x 1000000000");
+  expect_refusal(coordinate + "general\n1000000000 1000000000 1\n1 1 1\n", ":2: a matrix of 1000000000 x 1000000000");
 }
 
 /// A small file of each kind.
@@ -397,8 +378,7 @@ TEST_F(MatrixFile, DamagedAnywhereIsRefusedOrFinite) {
             bytes[at] = static_cast<char>(random.below(256));
             break;
           case 2:
-            bytes.insert(at,
-                         tokens[static_cast<std::size_t>(random.below(static_cast<Index>(tokens.size())))]);
+            bytes.insert(at, tokens[static_cast<std::size_t>(random.below(static_cast<Index>(tokens.size())))]);
             break;
           case 3:
             bytes.erase(at, static_cast<std::size_t>(1 + random.below(9)));

@@ -46,13 +46,12 @@ Decision refused(std::string file, std::string message) {
 const std::vector<Decision>& decisions() {
   static const std::vector<Decision> table{
       // The same mesh in many formats: each equals fmt_22_ascii.msh.
-      read("fmt_22_ascii.msh"), read("fmt_22_bin.msh"), read("fmt_22_bin_bigendian.msh"),
-      read("fmt_41_ascii.msh"), read("fmt_41_bin.msh"), read("fmt_41_bin_blocks.msh"),
-      read("fmt_sparse_tags.msh"), read("fmt_sparse_tags_41.msh"), read("fmt_physical_groups.msh"),
-      read("fmt_medit.mesh"), read("fmt_medit_triangles_first.mesh"), read("fmt_medit_crlf.mesh"),
-      read("fmt_medit_onetoken.mesh"), read("fmt_22_crlf.msh"), read("fmt_22_comments.msh"),
-      read("fmt_1based"), read("fmt_0based"), read("fmt_tetgen_attrs"),
-      read("fmt_vega.veg", {"material BODY are not read"}), read("fmt_legacy_ascii.vtk"),
+      read("fmt_22_ascii.msh"), read("fmt_22_bin.msh"), read("fmt_22_bin_bigendian.msh"), read("fmt_41_ascii.msh"),
+      read("fmt_41_bin.msh"), read("fmt_41_bin_blocks.msh"), read("fmt_sparse_tags.msh"),
+      read("fmt_sparse_tags_41.msh"), read("fmt_physical_groups.msh"), read("fmt_medit.mesh"),
+      read("fmt_medit_triangles_first.mesh"), read("fmt_medit_crlf.mesh"), read("fmt_medit_onetoken.mesh"),
+      read("fmt_22_crlf.msh"), read("fmt_22_comments.msh"), read("fmt_1based"), read("fmt_0based"),
+      read("fmt_tetgen_attrs"), read("fmt_vega.veg", {"material BODY are not read"}), read("fmt_legacy_ascii.vtk"),
       read("fmt_legacy_bin.vtk"), read("fmt_ascii.vtu"), read("fmt_base64.vtu"), read("fmt_zlib.vtu"),
       read("fmt_appended.vtu"), read("fmt_appended_zlib.vtu"),
       // Scale, place and shape: nothing is judged by absolute sizes.
@@ -92,12 +91,10 @@ const std::vector<Decision>& decisions() {
       refused("bad_count_huge_bin41.msh", "byte 183: announces 4611686018427387904 nodes"),
       refused("bad_version.msh", ":2: expected Gmsh format version 2.2 or 4.1, found 9.9"),
       refused("bad_empty.msh", "the file is empty"), refused("bad_zero_nodes.msh", "holds no tetrahedra"),
-      refused("bad_wrong_extension.msh", "triangle surface (OFF)"),
-      refused("bad_base64.vtu", "well-formed XML"),
+      refused("bad_wrong_extension.msh", "triangle surface (OFF)"), refused("bad_base64.vtu", "well-formed XML"),
       refused("bad_medit_2d.mesh", ":2: expected Dimension 3, found 2"),
       // Other elements: solids are never dropped silently.
-      refused("mix_tet_hex.msh", "holds 2 hexahedra and 6 tets"),
-      refused("mix_hex_only.msh", "holds 2 hexahedra;"),
+      refused("mix_tet_hex.msh", "holds 2 hexahedra and 6 tets"), refused("mix_hex_only.msh", "holds 2 hexahedra;"),
       refused("mix_surface_only.msh", "holds no tetrahedra but 48 cells of lower dimension"),
       read("mix_tet10.msh", {"48 tets are of higher order", "98 nodes belong to no tet"})};
   return table;

@@ -77,8 +77,7 @@ TEST(BuiltinMesh, MengerSpongesHaveTheCountsOfTheirConstruction) {
 
 TEST(BuiltinMesh, VolumeOfTheBallConvergesWithOrderTwo) {
   const double exact = std::numbers::pi / 6;
-  const double coarse = exact - volume(builtin_mesh("ball:12")),
-               fine = exact - volume(builtin_mesh("ball:24"));
+  const double coarse = exact - volume(builtin_mesh("ball:12")), fine = exact - volume(builtin_mesh("ball:24"));
   EXPECT_GT(fine, 0);  // chords of a convex surface
   EXPECT_GT(std::log2(coarse / fine), 1.8);
 }
@@ -156,8 +155,7 @@ TEST(StuffIsosurface, RefusesASpacingThatIsNoneAndASolidThatIsNot) {
   const BoundingBox box{Point::Zero(), Point::Ones()};
   const auto outside = [](const Point&) { return -1.0; };
   EXPECT_THROW(stuff_isosurface(outside, box, 0), std::invalid_argument);
-  EXPECT_THROW(stuff_isosurface(outside, box, std::numeric_limits<double>::quiet_NaN()),
-               std::invalid_argument);
+  EXPECT_THROW(stuff_isosurface(outside, box, std::numeric_limits<double>::quiet_NaN()), std::invalid_argument);
   EXPECT_THROW(stuff_isosurface(outside, box, 1e-6), std::invalid_argument);
   EXPECT_THROW(stuff_isosurface(outside, box, 0.1), std::invalid_argument);
 }

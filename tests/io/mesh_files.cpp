@@ -92,8 +92,7 @@ std::string gmsh_22(const Mesh& mesh) {
 
 template <typename Mesh>
 std::string gmsh_22_binary(const Mesh& mesh, bool big) {
-  std::string s =
-      "$MeshFormat\n2.2 1 8\n" + raw(std::int32_t{1}, big) + "\n$EndMeshFormat\n" + physical_names(mesh);
+  std::string s = "$MeshFormat\n2.2 1 8\n" + raw(std::int32_t{1}, big) + "\n$EndMeshFormat\n" + physical_names(mesh);
   s += "$Nodes\n" + std::to_string(mesh.num_nodes()) + "\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) {
     s += raw(static_cast<std::int32_t>(v + 1), big);
@@ -106,16 +105,14 @@ std::string gmsh_22_binary(const Mesh& mesh, bool big) {
     integer(e + 1), integer(region(mesh, e)), integer(1);
     for (const Index v : in_gmsh(cells_of(mesh)[e])) integer(v + 1);
   }
-  return s + "\n$EndElements\n$ElementData\nsome bytes: " + raw(std::int32_t{0x24456e64}) +
-         "$EndElementData\n";
+  return s + "\n$EndElements\n$ElementData\nsome bytes: " + raw(std::int32_t{0x24456e64}) + "$EndElementData\n";
 }
 
 /// Gmsh 4.1 with a volume entity, 10 + tag, for each region.
 template <typename Mesh>
 std::string gmsh_41(const Mesh& mesh, bool binary) {
-  std::string s = std::string("$MeshFormat\n4.1 ") +
-                  (binary ? "1 8\n" + raw(std::int32_t{1}) + "\n" : "0 8\n") + "$EndMeshFormat\n" +
-                  physical_names(mesh);
+  std::string s = std::string("$MeshFormat\n4.1 ") + (binary ? "1 8\n" + raw(std::int32_t{1}) + "\n" : "0 8\n") +
+                  "$EndMeshFormat\n" + physical_names(mesh);
   const auto integer = [&](Index value) {
     s += binary ? raw(static_cast<std::int32_t>(value)) : std::to_string(value) + " ";
   };
@@ -169,8 +166,8 @@ std::string gmsh_41(const Mesh& mesh, bool binary) {
 
 template <typename Mesh>
 std::string medit(const Mesh& mesh) {
-  std::string s = "MeshVersionFormatted 2\n# a comment\nDimension 3\nVertices\n" +
-                  std::to_string(mesh.num_nodes()) + "\n";
+  std::string s =
+      "MeshVersionFormatted 2\n# a comment\nDimension 3\nVertices\n" + std::to_string(mesh.num_nodes()) + "\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += xyz(mesh, v) + " 0\n";
   s += "RequiredVertices\n2\n1\n2\nTriangles\n1\n1 2 3 9\n" + std::string(words_of<Mesh>.medit) + "\n" +
        std::to_string(num_cells(mesh)) + "\n";
@@ -182,8 +179,7 @@ std::string medit(const Mesh& mesh) {
 template <typename Mesh>
 std::string tetgen_node(const Mesh& mesh, Index first) {
   std::string s = "# nodes\n" + std::to_string(mesh.num_nodes()) + " 3 1 1\n";
-  for (Index v = 0; v < mesh.num_nodes(); ++v)
-    s += std::to_string(v + first) + " " + xyz(mesh, v) + " 0.5 1 # more\n";
+  for (Index v = 0; v < mesh.num_nodes(); ++v) s += std::to_string(v + first) + " " + xyz(mesh, v) + " 0.5 1 # more\n";
   return s;
 }
 
@@ -245,8 +241,7 @@ std::string legacy_vtk(const Mesh& mesh, bool binary, bool version_5) {
   s += "\nCELL_TYPES " + m + "\n";
   for (Index e = 0; e < num_cells(mesh); ++e) put(std::int32_t{words_of<Mesh>.vtk});
   s += "\nCELL_DATA " + m + "\n";
-  s += version_5 ? "FIELD FieldData 2\nother 2 " + m + " float\n"
-                 : "SCALARS other float\nLOOKUP_TABLE default\n";
+  s += version_5 ? "FIELD FieldData 2\nother 2 " + m + " float\n" : "SCALARS other float\nLOOKUP_TABLE default\n";
   for (Index e = 0; e < (version_5 ? 2 : 1) * num_cells(mesh); ++e) put(0.5f);
   s += version_5 ? "\nregion 1 " + m + " int\n" : "\nSCALARS region int 1\nLOOKUP_TABLE default\n";
   for (Index e = 0; e < num_cells(mesh); ++e) put(static_cast<std::int32_t>(region(mesh, e)));
@@ -276,18 +271,16 @@ class VtuWriter {
 
   std::string write() {
     std::string s =
-        std::string(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"") +
+        std::string("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"") +
         (style_.big_endian ? "BigEndian" : "LittleEndian") + "\" header_type=\"" +
         (style_.wide_header ? "UInt64" : "UInt32") + "\"" +
         (style_.zlib ? " compressor=\"vtkZLibDataCompressor\"" : "") +
-        ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(mesh_.num_nodes()) +
-        "\" NumberOfCells=\"" + std::to_string(num_cells(mesh_)) + "\">\n";
+        ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(mesh_.num_nodes()) + "\" NumberOfCells=\"" +
+        std::to_string(num_cells(mesh_)) + "\">\n";
     std::string points, connectivity, offsets, types, regions;
     for (Index k = 0; k < mesh_.nodes.size(); ++k) points += raw(mesh_.nodes.data()[k], style_.big_endian);
     for (Index e = 0; e < num_cells(mesh_); ++e) {
-      for (const Index v : cells_of(mesh_)[e])
-        connectivity += raw(static_cast<std::int32_t>(v), style_.big_endian);
+      for (const Index v : cells_of(mesh_)[e]) connectivity += raw(static_cast<std::int32_t>(v), style_.big_endian);
       offsets += raw(std::int64_t{cell_size<Mesh> * (e + 1)}, style_.big_endian);
       types += raw(static_cast<std::uint8_t>(words_of<Mesh>.vtk));
       regions += raw(static_cast<std::int16_t>(region(mesh_, e)), style_.big_endian);
@@ -298,8 +291,8 @@ class VtuWriter {
          array("UInt8", "types", types);
     s += "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
     if (style_.appended)
-      s += std::string("<AppendedData encoding=\"") + (style_.base64 ? "base64" : "raw") + "\">\n_" +
-           appended_ + "\n</AppendedData>\n";
+      s += std::string("<AppendedData encoding=\"") + (style_.base64 ? "base64" : "raw") + "\">\n_" + appended_ +
+           "\n</AppendedData>\n";
     return s + "</VTKFile>\n";
   }
 
@@ -324,8 +317,7 @@ class VtuWriter {
       header += word(size);
       blocks += packed.substr(0, size);
     }
-    return encoded(word((bytes.size() + block - 1) / block) + word(block) + word(bytes.size() % block) +
-                   header) +
+    return encoded(word((bytes.size() + block - 1) / block) + word(block) + word(bytes.size() % block) + header) +
            encoded(blocks);
   }
 
@@ -357,10 +349,9 @@ std::string vtu_ascii(const Mesh& mesh) {
   };
   return "<VTKFile type=\"UnstructuredGrid\">\n<!-- a comment -->\n<UnstructuredGrid><Piece "
          "NumberOfPoints=\"" +
-         std::to_string(mesh.num_nodes()) + "\" NumberOfCells=\"" + std::to_string(num_cells(mesh)) +
-         "\">\n<Points>" + array("Points\" NumberOfComponents=\"3", points) + "</Points><Cells>" +
-         array("connectivity", connectivity) + array("offsets", offsets) + array("types", types) +
-         "</Cells><CellData>" + array("Region", regions) +
+         std::to_string(mesh.num_nodes()) + "\" NumberOfCells=\"" + std::to_string(num_cells(mesh)) + "\">\n<Points>" +
+         array("Points\" NumberOfComponents=\"3", points) + "</Points><Cells>" + array("connectivity", connectivity) +
+         array("offsets", offsets) + array("types", types) + "</Cells><CellData>" + array("Region", regions) +
          "</CellData></Piece></UnstructuredGrid></VTKFile>\n";
 }
 
@@ -386,14 +377,10 @@ std::vector<MeshFile> every_format(const Mesh& mesh) {
     files.push_back({name, ".vtu", VtuWriter(mesh, style).write(), ""});
   };
   using S = VtuStyle;
-  add("vtu_base64",
-      S{.appended = false, .base64 = true, .zlib = false, .wide_header = true, .big_endian = false});
-  add("vtu_base64_big",
-      S{.appended = false, .base64 = true, .zlib = false, .wide_header = false, .big_endian = true});
-  add("vtu_base64_zlib",
-      S{.appended = false, .base64 = true, .zlib = true, .wide_header = false, .big_endian = false});
-  add("vtu_appended",
-      S{.appended = true, .base64 = false, .zlib = false, .wide_header = true, .big_endian = false});
+  add("vtu_base64", S{.appended = false, .base64 = true, .zlib = false, .wide_header = true, .big_endian = false});
+  add("vtu_base64_big", S{.appended = false, .base64 = true, .zlib = false, .wide_header = false, .big_endian = true});
+  add("vtu_base64_zlib", S{.appended = false, .base64 = true, .zlib = true, .wide_header = false, .big_endian = false});
+  add("vtu_appended", S{.appended = true, .base64 = false, .zlib = false, .wide_header = true, .big_endian = false});
   add("vtu_appended_zlib",
       S{.appended = true, .base64 = false, .zlib = true, .wide_header = true, .big_endian = false});
   add("vtu_appended_base64",

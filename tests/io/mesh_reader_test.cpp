@@ -2,9 +2,9 @@
 #include <io/builtin_meshes.hpp>
 #include <io/mesh_reader.hpp>
 #include <io/vtu_writer.hpp>
+#include <testing/near.hpp>
 #include <tests/io/mesh_files.hpp>
 #include <tests/support/meshes.hpp>
-#include <testing/near.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -60,8 +60,7 @@ TEST_P(EveryFormat, KeepsEveryBitAndTheRegions) {
 
 TEST_P(EveryFormat, IsKnownByItsContentWhateverItsName) {
   if (GetParam().extension == ".node") return;  // TetGen files have no mark of their own
-  EXPECT_EQ(read_tet_mesh(write(GetParam().bytes, test_folder() / (GetParam().format + ".dat"))).num_tets(),
-            48);
+  EXPECT_EQ(read_tet_mesh(write(GetParam().bytes, test_folder() / (GetParam().format + ".dat"))).num_tets(), 48);
 }
 
 TEST_P(EveryFormat, RefusesAFileThatEndsTooEarlyOrLosesNothing) {
@@ -95,12 +94,11 @@ TEST(ReadTetMesh, FindsTheTetgenPairByEitherNameAndByTheStem) {
 
 TEST(ReadTetMesh, KeepsTheNumbersOfTheFileWhenNodesAreDropped) {
   MeshNotes notes;
-  const TetMesh mesh =
-      read_tet_mesh(write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n"
-                          "50 9 9 9\n40 0 0 0\n30 1 0 0\n7 nan 0 0\n20 0 1 0\n10 0 0 1\n$EndNodes\n"
-                          "$Elements\n1\n77 4 0 40 30 20 10\n$EndElements\n",
-                          test_folder() / "numbers.msh"),
-                    &notes);
+  const TetMesh mesh = read_tet_mesh(write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n"
+                                           "50 9 9 9\n40 0 0 0\n30 1 0 0\n7 nan 0 0\n20 0 1 0\n10 0 0 1\n$EndNodes\n"
+                                           "$Elements\n1\n77 4 0 40 30 20 10\n$EndElements\n",
+                                           test_folder() / "numbers.msh"),
+                                     &notes);
   EXPECT_THAT(notes.numbers.node, ElementsAre(40, 30, 20, 10));
   EXPECT_THAT(notes.numbers.cell, ElementsAre(77));
   EXPECT_THAT(notes.warnings, ElementsAre("2 nodes belong to no tet: dropped"));
@@ -120,8 +118,8 @@ TEST(ReadTetMesh, ReadsSeveralPiecesOfAVtuAsOneMesh) {
   EXPECT_EQ(mesh.num_tets(), 96);
   EXPECT_EQ(mesh.region.size(), 96u);
   EXPECT_EQ(notes.numbers.cell.back(), 95);
-  EXPECT_THAT(notes.warnings, ElementsAre("27 nodes lie where another node is: not merged",
-                                          "2 components that are not connected"));
+  EXPECT_THAT(notes.warnings,
+              ElementsAre("27 nodes lie where another node is: not merged", "2 components that are not connected"));
 }
 
 TEST(ReadTetMesh, ReadsWhatWriteVtuWrites) {
@@ -153,16 +151,13 @@ TEST(ReadTetMesh, AcceptsWhatNumbersMayLookLike) {
 }
 
 TEST(ReadTetMesh, NamesFileAndLineOfWhatItCannotRead) {
-  const std::string head =
-      "MeshVersionFormatted 1\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n";
+  const std::string head = "MeshVersionFormatted 1\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n";
   EXPECT_THAT(refusal(head + "Tetrahedra\n1\n1 2 3 5 0\n", "a.mesh"),
               HasSubstr("a.mesh:11: node 5 does not exist: nodes are numbered 1 … 4"));
   EXPECT_THAT(refusal(head + "Tetrahedra\n1\n1 2 x 4 0\n", "a.mesh"),
               HasSubstr("a.mesh:11: expected a node number, found \"x\""));
-  EXPECT_THAT(
-      refusal(head + "Tetrahedra\n99999999999\n1 2 3 4 0\n", "a.mesh"),
-      HasSubstr(
-          "a.mesh:10: announces 99999999999 tetrahedra, but the 11 bytes that follow cannot hold them"));
+  EXPECT_THAT(refusal(head + "Tetrahedra\n99999999999\n1 2 3 4 0\n", "a.mesh"),
+              HasSubstr("a.mesh:10: announces 99999999999 tetrahedra, but the 11 bytes that follow cannot hold them"));
   EXPECT_THAT(refusal(head + "Tetrahedra\n-1\n", "a.mesh"), HasSubstr("number of tetrahedra is negative"));
   EXPECT_THAT(refusal(head, "a.mesh"), HasSubstr("a.mesh: holds no tetrahedra"));
   EXPECT_THAT(refusal(head + "Tetrahedra\n1\n1 2 3 3 0\n", "a.mesh"), HasSubstr("tet 1 names node 3 twice"));
@@ -177,10 +172,8 @@ TEST(ReadTetMesh, NamesFormatsThatItDoesNotRead) {
   EXPECT_THAT(refusal("$NOD\n4\n", "old.msh"), HasSubstr("Gmsh format 1"));
   EXPECT_THAT(refusal("ply\nformat ascii 1.0\n", "surface.ply"), HasSubstr("triangle surface (ply)"));
   EXPECT_THAT(refusal("hello", "hello.txt"), HasSubstr("Gmsh .msh (2.2, 4.1), Medit .mesh"));
-  EXPECT_THAT(refusal("<?xml version=\"1.0\"?><VTKFile type=\"PolyData\"/>", "surface.vtu"),
-              HasSubstr("PolyData"));
-  EXPECT_THAT(refusal("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n", "s.vtk"),
-              HasSubstr("POLYDATA"));
+  EXPECT_THAT(refusal("<?xml version=\"1.0\"?><VTKFile type=\"PolyData\"/>", "surface.vtu"), HasSubstr("PolyData"));
+  EXPECT_THAT(refusal("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n", "s.vtk"), HasSubstr("POLYDATA"));
   EXPECT_THROW(read_tet_mesh(test_folder() / "absent.msh"), InputError);
   EXPECT_THROW(read_tet_mesh(test_folder()), InputError);
   EXPECT_THROW(read_tet_mesh(std::string(5000, 'a')), InputError);

@@ -29,8 +29,7 @@ PictureObject box(const Point& lower, const Point& size) {
   PictureObject object;
   object.positions.resize(8, 3);
   for (Index v = 0; v < 8; ++v)
-    object.positions.row(v) =
-        (lower + Point(v & 1, (v >> 1) & 1, (v >> 2) & 1).cwiseProduct(size)).transpose();
+    object.positions.row(v) = (lower + Point(v & 1, (v >> 1) & 1, (v >> 2) & 1).cwiseProduct(size)).transpose();
   object.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                       {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return object;
@@ -96,8 +95,7 @@ TEST(FitView, HoldsEverythingAndComesAsCloseAsPossible) {
     for (const double azimuth : {0.0, 70.0, 200.0})
       for (const double elevation : {-30.0, 0.0, 25.0, 90.0}) {
         PictureOptions options = small();
-        options.camera = {
-            .azimuth = azimuth, .elevation = elevation, .field_of_view = fov, .up = Point::UnitZ()};
+        options.camera = {.azimuth = azimuth, .elevation = elevation, .field_of_view = fov, .up = Point::UnitZ()};
         const PictureObject object = box({5, -3, 100}, {3, 1, 2});
         const View view = fit_view({&object, 1}, options);
         Eigen::AlignedBox2d seen;
@@ -139,8 +137,7 @@ TEST(FitView, ReachKeepsRoomForOtherFrames) {
 }
 
 TEST(FitView, ObjectsSideBySideDoNotOverlapAndKeepTheirOrder) {
-  std::vector<PictureObject> objects{box({0, 0, 0}, {3, 1, 1}), box({0, 0, 0}, {1, 1, 1}),
-                                     box({-7, 0, 0}, {2, 1, 1})};
+  std::vector<PictureObject> objects{box({0, 0, 0}, {3, 1, 1}), box({0, 0, 0}, {1, 1, 1}), box({-7, 0, 0}, {2, 1, 1})};
   const PictureOptions options = small();
   const View view = fit_view(objects, options);
   double last = 0;
@@ -174,8 +171,7 @@ TEST(DrawPicture, ABallCoversTheAreaOfItsDisc) {
 }
 
 TEST(DrawPicture, TheNearerSurfaceHidesTheFarther) {
-  PictureObject back = quad({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}),
-                front = quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0});
+  PictureObject back = quad({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}), front = quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0});
   back.colour = rgb(0x3050ff);
   front.colour = rgb(0xff3020);
   PictureOptions options = small();
@@ -237,10 +233,8 @@ TEST(DrawPicture, MarkersInsideShimmerThrough) {
   cube.markers << 0.5, 0.5, 0.5, 0.5, 0.5, 1;
   cube.marker_radius = 0.08;
   const Image marked = draw_picture({&cube, 1}, options, view);
-  const auto inside = project(view, options, {0.5, 0.5, 0.5}),
-             outside = project(view, options, {0.5, 0.5, 1});
-  const double hidden = at(marked, inside).r - at(plain, inside).r,
-               open = at(marked, outside).r - at(plain, outside).r;
+  const auto inside = project(view, options, {0.5, 0.5, 0.5}), outside = project(view, options, {0.5, 0.5, 1});
+  const double hidden = at(marked, inside).r - at(plain, inside).r, open = at(marked, outside).r - at(plain, outside).r;
   EXPECT_GT(at(marked, inside).r - at(marked, inside).b, at(plain, inside).r - at(plain, inside).b + 0.1);
   EXPECT_GT(open, hidden);
   const auto beside = project(view, options, {0.5, 0.8, 1});
@@ -392,8 +386,7 @@ TEST(DrawPicture, DegenerateAndFarAwayObjectsAreHarmless) {
 }
 
 TEST(DrawPicture, NamesWhatIsWrong) {
-  const auto refuse = [](const PictureObject& object, const PictureOptions& options,
-                         const std::string& reason) {
+  const auto refuse = [](const PictureObject& object, const PictureOptions& options, const std::string& reason) {
     EXPECT_THAT([&] { draw(object, options); }, ThrowsMessage<std::invalid_argument>(HasSubstr(reason)));
   };
   const PictureObject good = box({0, 0, 0}, {1, 1, 1});

@@ -82,8 +82,8 @@ TEST_F(PlotTest, GapsInterruptTheLine) {
   SKIP_WITHOUT_GNUPLOT;
   const auto moves = [](const std::string& text) {  // of the curve: its path starts anew after each gap
     const std::size_t curve = text.find("gnuplot_plot_1");
-    const std::string path = text.substr(
-        text.find("<path", curve), text.find("/>", text.find("<path", curve)) - text.find("<path", curve));
+    const std::string path =
+        text.substr(text.find("<path", curve), text.find("/>", text.find("<path", curve)) - text.find("<path", curve));
     return std::count(path.begin(), path.end(), 'M');
   };
   plot.series[0].name.clear();

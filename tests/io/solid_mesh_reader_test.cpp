@@ -26,8 +26,12 @@ Mesh two_regions(const char* spec) {
   mesh.region_names = {{1, "soft"}, {2, "stiff"}};
   return mesh;
 }
-HexMesh hexahedra() { return two_regions<HexMesh>("hexbox:3x2x2"); }
-QuadraticTetMesh quadratic_tets() { return two_regions<QuadraticTetMesh>("tet10:cube:2"); }
+HexMesh hexahedra() {
+  return two_regions<HexMesh>("hexbox:3x2x2");
+}
+QuadraticTetMesh quadratic_tets() {
+  return two_regions<QuadraticTetMesh>("tet10:cube:2");
+}
 
 /// The message with which a file of these bytes is refused; empty if it is read.
 std::string refusal(const std::string& bytes, const std::string& name) {

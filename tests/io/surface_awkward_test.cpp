@@ -110,8 +110,8 @@ TEST_P(AwkwardSurface, IsReadOrRefusedAsDecided) {
     }
     for (Index t = 0; t < mesh.num_triangles(); ++t)
       for (int k = 0; k < 3; ++k)  // files of nine digits or 32 bits
-        EXPECT_TRUE(is_near(mesh.nodes.row(mesh.triangles[t][k]),
-                            reference.nodes.row(reference.triangles[t][k]), 1e-7));
+        EXPECT_TRUE(
+            is_near(mesh.nodes.row(mesh.triangles[t][k]), reference.nodes.row(reference.triangles[t][k]), 1e-7));
   }
 }
 

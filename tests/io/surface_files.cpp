@@ -29,8 +29,7 @@ std::string obj(const TriangleMesh& mesh) {
   std::string s = "# a comment\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += "v " + xyz(mesh, v) + "\n";
   for (const Triangle& t : mesh.triangles)
-    s += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) +
-         "\n";
+    s += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
   return s;
 }
 
@@ -53,8 +52,7 @@ std::string obj_rich(const TriangleMesh& mesh) {
 }
 
 std::string off(const TriangleMesh& mesh) {
-  std::string s =
-      "OFF\n" + std::to_string(mesh.num_nodes()) + " " + std::to_string(mesh.num_triangles()) + " 0\n";
+  std::string s = "OFF\n" + std::to_string(mesh.num_nodes()) + " " + std::to_string(mesh.num_triangles()) + " 0\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += xyz(mesh, v) + "\n";
   for (const Triangle& t : mesh.triangles)
     s += "3 " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) + "\n";
@@ -62,12 +60,11 @@ std::string off(const TriangleMesh& mesh) {
 }
 
 std::string off_rich(const TriangleMesh& mesh) {
-  std::string s = "# first\nCNOFF " + std::to_string(mesh.num_nodes()) + " " +
-                  std::to_string(mesh.num_triangles()) + "\n\n# second\n";
+  std::string s = "# first\nCNOFF " + std::to_string(mesh.num_nodes()) + " " + std::to_string(mesh.num_triangles()) +
+                  "\n\n# second\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += xyz(mesh, v) + "  0 0 1  0.5 0.5 0.5 1 # third\n\n";
   for (const Triangle& t : mesh.triangles)
-    s += " 3\t" + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) +
-         "  255 0 0\n";
+    s += " 3\t" + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) + "  255 0 0\n";
   return s;
 }
 
@@ -170,14 +167,12 @@ std::vector<MeshFile> in_every_format(const TriangleMesh& mesh) {
                               {"stl_ascii", ".stl", stl_ascii(mesh), ""},
                               {"stl_binary_float", ".stl", stl_binary(mesh), ""}};
   for (const bool rich : {false, true})
-    for (const auto& [name, binary, big] : {std::tuple{"ply_ascii", false, false},
-                                            {"ply_little_endian", true, false},
-                                            {"ply_big_endian", true, true}})
+    for (const auto& [name, binary, big] :
+         {std::tuple{"ply_ascii", false, false}, {"ply_little_endian", true, false}, {"ply_big_endian", true, true}})
       files.push_back({name + std::string(rich ? "_rich" : ""), ".ply",
                        ply(mesh, {.binary = binary, .big_endian = big, .rich = rich}), ""});
   files.push_back({"ply_float", ".ply",
-                   ply(mesh, {.binary = true, .big_endian = false, .rich = false, .float_coordinates = true}),
-                   ""});
+                   ply(mesh, {.binary = true, .big_endian = false, .rich = false, .float_coordinates = true}), ""});
   return files;
 }
 

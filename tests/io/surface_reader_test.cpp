@@ -1,8 +1,8 @@
 #include <core/check.hpp>
 #include <io/surface_reader.hpp>
+#include <testing/near.hpp>
 #include <tests/io/surface_files.hpp>
 #include <tests/support/meshes.hpp>
-#include <testing/near.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,9 +66,8 @@ TEST_P(EverySurfaceFormat, KeepsEveryBitAndTheOrder) {
     EXPECT_EQ(notes.numbers.node.size(), 20u);
     EXPECT_EQ(notes.numbers.triangle.size(), 24u);
     if (is_stl(file)) {
-      EXPECT_THAT(notes.warnings,
-                  ElementsAre("72 corners merged to 20 nodes by their exact positions, as STL "
-                              "has none of its own"));
+      EXPECT_THAT(notes.warnings, ElementsAre("72 corners merged to 20 nodes by their exact positions, as STL "
+                                              "has none of its own"));
     } else {
       EXPECT_TRUE(is_same(mesh.nodes, expected.nodes));
       EXPECT_EQ(mesh.triangles, expected.triangles);
@@ -113,11 +112,10 @@ TEST(ReadTriangleMesh, KeepsTheNumbersOfTheFileWhenNodesAreDropped) {
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_THAT(notes.numbers.node, ElementsAre(2, 3, 5, 6));
   EXPECT_THAT(notes.numbers.triangle, ElementsAre(1, 1));
-  EXPECT_THAT(notes.warnings, ElementsAre("1 polygon was cut into fans of triangles",
-                                          "2 nodes belong to no triangle: dropped"));
+  EXPECT_THAT(notes.warnings,
+              ElementsAre("1 polygon was cut into fans of triangles", "2 nodes belong to no triangle: dropped"));
   EXPECT_THAT(refusal(obj + "f 3 2 1\n", "numbers.obj"), IsEmpty());
-  EXPECT_THAT(refusal(obj + "f 6 5 4\n", "numbers.obj"),
-              HasSubstr("node 4 has a coordinate that is not finite"));
+  EXPECT_THAT(refusal(obj + "f 6 5 4\n", "numbers.obj"), HasSubstr("node 4 has a coordinate that is not finite"));
 }
 
 TEST(ReadTriangleMesh, CutsConcavePolygonsFromACornerThatSeesThemAll) {
@@ -128,15 +126,14 @@ TEST(ReadTriangleMesh, CutsConcavePolygonsFromACornerThatSeesThemAll) {
   EXPECT_NEAR(area, 3, 1e-15);
   // a comb, of which no corner sees all
   EXPECT_THAT(
-      refusal("OFF\n8 1 0\n0 0 0\n5 0 0\n5 3 0\n4 1 0\n3 3 0\n2 1 0\n1 3 0\n0 1 0\n8 0 1 2 3 4 5 6 7\n",
-              "comb.off"),
+      refusal("OFF\n8 1 0\n0 0 0\n5 0 0\n5 3 0\n4 1 0\n3 3 0\n2 1 0\n1 3 0\n0 1 0\n8 0 1 2 3 4 5 6 7\n", "comb.off"),
       HasSubstr("comb.off: face 0 has 8 corners, and from none"));
 }
 
 TEST(ReadTriangleMesh, TurnsTrianglesBackAndRefusesMoebiusStrips) {
   MeshNotes notes;
-  const TriangleMesh mesh = read("OFF\n5 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 1 0\n3 0 1 2\n3 0 3 2\n3 1 4 2\n",
-                                 "turned.off", &notes);
+  const TriangleMesh mesh =
+      read("OFF\n5 3 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 1 0\n3 0 1 2\n3 0 3 2\n3 1 4 2\n", "turned.off", &notes);
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {1, 4, 2}}));
   EXPECT_THAT(notes.warnings, ElementsAre("1 triangle was turned over against the others: turned back"));
   // five triangles in a ring with a half twist: the smallest Möbius strip
@@ -152,11 +149,10 @@ TEST(ReadTriangleMesh, TellsOfWhatMaySurprise) {
       "OFF\n10 4 0\n0 0 0\n1 0 0\n0 1 0\n1 0 0\n0 1 0\n1 1 0\n2 1 0\n5 0 0\n6 0 0\n5 1e-5 0\n"
       "3 0 1 2\n3 3 5 4\n3 5 3 6\n3 7 8 9\n2 0 1\n",
       "soup.off", &notes);
-  EXPECT_THAT(notes.warnings, ElementsAre("2 nodes lie where another node is: not merged",
-                                          "3 components that are not connected",
-                                          HasSubstr("needles: the worst, triangle 3, has radius ratio")));
-  read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 1 4 5\nl 1 2\np 3\nf 1 2\n", "pinched.obj",
-       &notes);
+  EXPECT_THAT(notes.warnings,
+              ElementsAre("2 nodes lie where another node is: not merged", "3 components that are not connected",
+                          HasSubstr("needles: the worst, triangle 3, has radius ratio")));
+  read("v 0 0 0\nv 1 0 0\nv 0 1 0\nv -1 0 0\nv 0 -1 0\nf 1 2 3\nf 1 4 5\nl 1 2\np 3\nf 1 2\n", "pinched.obj", &notes);
   EXPECT_THAT(notes.warnings,
               ElementsAre("1 face has fewer than three corners: left out", "2 lines and points left out",
                           "parts hang together by 1 node only, about which they turn freely"));
@@ -199,8 +195,7 @@ TEST(ReadTriangleMesh, RefusesWithFilePlaceAndExpectation) {
               HasSubstr("a.ply: element vertex has no number y"));
   EXPECT_THAT(refusal(head + vertices + "element face 1\nproperty int i\n" + body, "a.ply"),
               HasSubstr("no list of whole numbers vertex_indices"));
-  EXPECT_THAT(refusal(head + vertices + "element tristrips 1\nproperty list int int vertex_indices\n" + body,
-                      "a.ply"),
+  EXPECT_THAT(refusal(head + vertices + "element tristrips 1\nproperty list int int vertex_indices\n" + body, "a.ply"),
               HasSubstr("holds no triangles"));
   EXPECT_THAT(refusal(head + "element vertex 4611686018427387904\nproperty float x\nend_header\n", "a.ply"),
               HasSubstr("announces 4611686018427387904 elements vertex"));

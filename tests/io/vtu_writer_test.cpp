@@ -66,8 +66,7 @@ TEST_F(VtuWriter, ArraysStandWhereTheXmlSays) {
   EXPECT_THAT(array<double>(file, "weight"), testing::ElementsAre(1.25, 2.25));
   EXPECT_EQ(array<double>(file, "displacement [m]")[14], 14);
   EXPECT_THAT(file, HasSubstr("Name=\"heat &lt;&amp;&quot;&gt;\" NumberOfComponents=\"1\""));
-  EXPECT_THAT(file, AllOf(HasSubstr("NumberOfPoints=\"5\" NumberOfCells=\"2\""),
-                          HasSubstr("header_type=\"UInt64\"")));
+  EXPECT_THAT(file, AllOf(HasSubstr("NumberOfPoints=\"5\" NumberOfCells=\"2\""), HasSubstr("header_type=\"UInt64\"")));
 }
 
 TEST_F(VtuWriter, MeshioReadsTetsTrianglesAndFields) {
@@ -100,8 +99,7 @@ TEST_F(VtuWriter, EmptyMeshesAreWritten) {
 
 TEST_F(VtuWriter, RefusesFieldsAndCellsThatDoNotFit) {
   const auto refuse = [&](const VtuFields& wrong, const std::string& reason) {
-    EXPECT_THAT([&] { write_vtu(path, nodes, tets, wrong); },
-                ThrowsMessage<std::invalid_argument>(HasSubstr(reason)));
+    EXPECT_THAT([&] { write_vtu(path, nodes, tets, wrong); }, ThrowsMessage<std::invalid_argument>(HasSubstr(reason)));
   };
   refuse({.point_data = {{"u", RowMatrix(4, 3)}}}, "field 'u' has size 4, expected 5");
   refuse({.cell_data = {{"w", RowMatrix(5, 1)}}}, "field 'w' has size 5, expected 2");
@@ -125,8 +123,8 @@ TEST_F(VtuWriter, SeriesIsCompleteAfterEveryFrame) {
                                 ".vtu\"/>\n  </Collection>\n</VTKFile>"));
     EXPECT_TRUE(fs::exists(folder / ("run & more_00000" + std::to_string(frame) + ".vtu")));
   }
-  EXPECT_THAT(read_all(pvd), AllOf(HasSubstr("timestep=\"0\""), HasSubstr("timestep=\"0.1\""),
-                                   HasSubstr("timestep=\"0.2\"")));
+  EXPECT_THAT(read_all(pvd),
+              AllOf(HasSubstr("timestep=\"0\""), HasSubstr("timestep=\"0.1\""), HasSubstr("timestep=\"0.2\"")));
   EXPECT_EQ(series.num_frames(), 3);
   EXPECT_THROW(series.add(0.1, nodes, tets), std::invalid_argument);
   EXPECT_THROW(VtuSeries(folder / "run.vtu"), InputError);

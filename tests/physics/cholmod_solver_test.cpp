@@ -39,8 +39,7 @@ SparseMatrix random_spd(Index nodes, Index b, Index neighbours, std::uint64_t se
         }
     }
   for (Index i = 0; i < nodes * b; ++i)
-    for (Index c = i / b * b; c < (i / b + 1) * b; ++c)
-      entries.emplace_back(i, c, i == c ? row_sums[i] + 1 : 0);
+    for (Index c = i / b * b; c < (i / b + 1) * b; ++c) entries.emplace_back(i, c, i == c ? row_sums[i] + 1 : 0);
   SparseMatrix A(nodes * b, nodes * b);
   A.setFromTriplets(entries.begin(), entries.end());
   return A;
@@ -138,8 +137,7 @@ TEST(CholmodSolver, FactorsLargeDenseFronts) {
     for (const Index cols : {1, 2, 4, 5, 8, 9}) {
       Matrix X(A.rows(), cols);
       cholesky.solve(B.leftCols(cols), X);
-      EXPECT_LE((X - expected.leftCols(cols)).norm(), 1e-13 * expected.norm())
-          << cols << " columns";  // condition: 3
+      EXPECT_LE((X - expected.leftCols(cols)).norm(), 1e-13 * expected.norm()) << cols << " columns";  // condition: 3
     }
   }
 }
@@ -187,8 +185,7 @@ TEST(CholmodSolver, TellsAnIndefiniteOrSingularOrInfiniteMatrix) {
   EXPECT_THROW(static_cast<void>(cholesky.solve(Vector::Ones(A.rows()))), std::invalid_argument);
   wrong.coeffRef(300, 300) = 0;
   EXPECT_FALSE(cholesky.factorize(wrong));
-  for (const double value :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     wrong.coeffRef(300, 300) = value;
     EXPECT_FALSE(cholesky.factorize(wrong));
   }
@@ -282,8 +279,7 @@ TEST(CholmodSolver, NamesTheCallersMistake) {
   cholesky.analyze(A, 3);
   EXPECT_EQ(cholesky.dim(), A.rows());
   EXPECT_THROW(static_cast<void>(cholesky.factorize(grid_laplacian(4, 1))), std::invalid_argument);
-  EXPECT_THROW(static_cast<void>(cholesky.factorize(random_spd(A.rows() / 3, 3, 3, 1))),
-               std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(cholesky.factorize(random_spd(A.rows() / 3, 3, 3, 1))), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(cholesky.solve(Vector::Ones(A.rows()))), std::invalid_argument);
   ASSERT_TRUE(cholesky.factorize(A));
   EXPECT_THROW(static_cast<void>(cholesky.solve(Vector::Ones(5))), std::invalid_argument);

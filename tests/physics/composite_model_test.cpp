@@ -92,9 +92,10 @@ void expect_galerkin_projection(const FullSystem<Model>& system) {
 
 TEST(CompositeModel, IsReducedLikeAnyModel) {
   const TetMesh mesh = bar_mesh();
-  const auto force = std::make_shared<const CompositeModel<TetElasticity<StVenantKirchhoff>, EmbeddedModel<DiscreteShell>>>(
-      TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
-      skin_of(mesh, ShellMaterial::from({.young = 1e7, .poisson = 0.4}, 0.002)));
+  const auto force =
+      std::make_shared<const CompositeModel<TetElasticity<StVenantKirchhoff>, EmbeddedModel<DiscreteShell>>>(
+          TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
+          skin_of(mesh, ShellMaterial::from({.young = 1e7, .poisson = 0.4}, 0.002)));
   const FullSystem system(force, lumped_mass(mesh, 1000.0), bar_end(mesh));
   expect_galerkin_projection(system);
 }

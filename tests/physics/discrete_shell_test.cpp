@@ -3,10 +3,10 @@
 #include <physics/full_system.hpp>
 #include <physics/mass.hpp>
 #include <physics/newton.hpp>
-#include <tests/support/force_models.hpp>
-#include <tests/support/meshes.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/force_models.hpp>
+#include <tests/support/meshes.hpp>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -197,8 +197,7 @@ TEST(DiscreteShell, RigidMotionsChangeNothing) {
     const Mat3 R = random_rotation(seed);
     const Vector rigid = affine_displacement(mesh.nodes, R, {0.3, -2, 1});
     EXPECT_NEAR(system.energy(rigid), 0, rounding * scale);
-    EXPECT_TRUE(
-        is_near(system.force(rigid), Vector::Zero(rigid.size()), rounding * scale / CurvedShell::length));
+    EXPECT_TRUE(is_near(system.force(rigid), Vector::Zero(rigid.size()), rounding * scale / CurvedShell::length));
     const Vector u = w + affine_displacement(deformed, R, {1, 2, -1});
     EXPECT_NEAR(system.energy(u), system.energy(w), rounding * scale);
     const Vector f_w = system.force(w), f_u = system.force(u);
@@ -255,8 +254,7 @@ TEST(DiscreteShell, SheetBentToACylinderHasTheEnergyOfThePlate) {
     for (int level = 0; level < 3; ++level) {
       const double edge = 0.1 / (1 << level);
       const double density = bending_density(
-          equilateral_grid(4, 4, edge), 12, ShellMaterial::from(moduli, thickness).bending,
-          [&](const Point& x) {
+          equilateral_grid(4, 4, edge), 12, ShellMaterial::from(moduli, thickness).bending, [&](const Point& x) {
             const double s = std::cos(direction) * x[0] + std::sin(direction) * x[1];
             const double t = -std::sin(direction) * x[0] + std::cos(direction) * x[1];
             const double p = std::sin(kappa * s) / kappa, z = (1 - std::cos(kappa * s)) / kappa;
@@ -288,8 +286,7 @@ TEST(DiscreteShell, SmallCurvaturesHaveTheQuadraticEnergyOfTheMesh) {
                 0.5 * D * (trace * trace - 2 * (1 + 1.0 / 3) * determinant), tolerance * D);
     // squares cut along (1, 1)
     EXPECT_NEAR(bending_density(square_grid(4, 4), 12, D / 6, bend) / (scale * scale),
-                0.5 * D * ((S11 + S12) * (S11 + S12) + (S22 + S12) * (S22 + S12) + 4 * S12 * S12),
-                tolerance * D);
+                0.5 * D * ((S11 + S12) * (S11 + S12) + (S22 + S12) * (S22 + S12) + 4 * S12 * S12), tolerance * D);
   }
 }
 
@@ -309,9 +306,8 @@ TEST(DiscreteShell, SmallStretchesOfAnEquilateralPatchArePlaneStress) {
       Mat3 F = Mat3::Identity();
       F.topLeftCorner<2, 2>() += Eigen::Matrix2d{{e[0], e[2]}, {e[2], e[1]}};
       const Vector u = affine_displacement(mesh.nodes, F);
-      const double density =
-          E * h / (2 * (1 - nu_m * nu_m)) *
-          (e[0] * e[0] + e[1] * e[1] + 2 * nu_m * e[0] * e[1] + 2 * (1 - nu_m) * e[2] * e[2]);
+      const double density = E * h / (2 * (1 - nu_m * nu_m)) *
+                             (e[0] * e[0] + e[1] * e[1] + 2 * nu_m * e[0] * e[1] + 2 * (1 - nu_m) * e[2] * e[2]);
       EXPECT_NEAR(0.5 * u.dot(system.rest_stiffness() * u), density * area, rounding * E * h * area);
     }
   }
@@ -323,14 +319,12 @@ double relative_tip_deflection(const TriangleMesh& mesh, double edge, double cla
   constexpr double E = 1e9, h = 0.002, nu = 1.0 / 3;
   const std::vector<Index> fixed = nodes_where(mesh, [&](const Point& x) { return x[0] < clamped_to; });
   const double length = mesh.nodes.col(0).maxCoeff();
-  const std::vector<Index> tip =
-      nodes_where(mesh, [&](const Point& x) { return x[0] > length - 0.7 * edge; });
+  const std::vector<Index> tip = nodes_where(mesh, [&](const Point& x) { return x[0] > length - 0.7 * edge; });
   double clamp = 0, load_at = 0;  // where rows are staggered: in the mean of both kinds of rows
   for (const Index v : fixed) clamp += (mesh.nodes(v, 0) - 0.5 * edge) / static_cast<double>(fixed.size());
   clamp += edge;  // the mean of the second clamped column
   for (const Index v : tip) load_at += mesh.nodes(v, 0) / static_cast<double>(tip.size());
-  const double L = load_at - clamp, D = E * h * h * h / (12 * (1 - nu * nu)),
-               P = 0.1 * h * D * width / (L * L * L);
+  const double L = load_at - clamp, D = E * h * h * h / (12 * (1 - nu * nu)), P = 0.1 * h * D * width / (L * L * L);
 
   const FullSystem<DiscreteShell> system(DiscreteShell(mesh, ShellMaterial::from({E, nu}, h)),
                                          lumped_mass(mesh, 1000.0, h), fixed);
@@ -367,14 +361,13 @@ TEST(DiscreteShell, ClampedStripBendsLikeABeamUnderALoadAtItsTip) {
 TEST(DiscreteShell, ClampedStripOfSquaresHasFourFifthsOfTheStiffnessOfThePlate) {
   constexpr Index rows = 12, columns = 12 * rows;
   constexpr double edge = 1.0 / columns;
-  EXPECT_NEAR(relative_tip_deflection(square_grid(columns, rows, edge), edge, 1.2 * edge, rows * edge),
-              5.0 / 4, 0.015 * 5 / 4);
+  EXPECT_NEAR(relative_tip_deflection(square_grid(columns, rows, edge), edge, 1.2 * edge, rows * edge), 5.0 / 4,
+              0.015 * 5 / 4);
 }
 
 TEST(DiscreteShell, ThicknessMayVaryByTriangle) {
   TriangleMesh mesh = square_grid(1, 1);  // one flap
-  const ShellMaterial thin = ShellMaterial::from({1e6, 0.4}, 0.01),
-                      thick = ShellMaterial::from({1e6, 0.4}, 0.02);
+  const ShellMaterial thin = ShellMaterial::from({1e6, 0.4}, 0.01), thick = ShellMaterial::from({1e6, 0.4}, 0.02);
   EXPECT_NEAR(thick.bending, 8 * thin.bending, rounding * thick.bending);
   const auto bending = [&](const ShellMaterial& a, const ShellMaterial& b) {
     return DiscreteShell(mesh, {a, b}).term(0).bending;
@@ -385,14 +378,12 @@ TEST(DiscreteShell, ThicknessMayVaryByTriangle) {
   const auto spring = [&](const ShellMaterial& a, const ShellMaterial& b) {
     return DiscreteShell(mesh, {a, b}).term(0).spring[0];
   };
-  EXPECT_NEAR(spring(thin, thick), 0.5 * (spring(thin, thin) + spring(thick, thick)),
-              rounding * spring(thick, thick));
+  EXPECT_NEAR(spring(thin, thick), 0.5 * (spring(thin, thin) + spring(thick, thick)), rounding * spring(thick, thick));
   EXPECT_EQ(bending(thin, {.bending = 0, .stretch = 1, .area = 0}), 0);
 }
 
 TEST(DiscreteShell, RefusesMaterialsAndMeshesThatCannotBe) {
-  const auto message = [](const TriangleMesh& mesh,
-                          const std::vector<ShellMaterial>& materials) -> std::string {
+  const auto message = [](const TriangleMesh& mesh, const std::vector<ShellMaterial>& materials) -> std::string {
     try {
       DiscreteShell(mesh, materials);
       return "";
@@ -411,8 +402,7 @@ TEST(DiscreteShell, RefusesMaterialsAndMeshesThatCannotBe) {
   EXPECT_THROW((void)ShellMaterial::from({1e5, 0.3}, 0), std::invalid_argument);
   EXPECT_THROW((void)ShellMaterial::from({1e5, 0.5}, 0.1), std::invalid_argument);
 
-  TriangleMesh alone =
-      square_grid(2, 1);  // the last two triangles hang together with the first two by a node
+  TriangleMesh alone = square_grid(2, 1);  // the last two triangles hang together with the first two by a node
   alone.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}};
   EXPECT_THAT(message(alone, {all_terms}), HasSubstr("triangle 2 shares no edge"));
   TriangleMesh turned = two;

@@ -3,9 +3,9 @@
 #include <physics/mass.hpp>
 #include <physics/newton.hpp>
 #include <physics/solid_elasticity.hpp>
-#include <tests/support/boundary_values.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/boundary_values.hpp>
 #include <tests/support/solids.hpp>
 
 #include <Eigen/Dense>
@@ -146,8 +146,7 @@ TYPED_TEST(ElementTest, GaussPointsOfACellAddUpToTheCell) {
 TYPED_TEST(ElementTest, AffineFieldsGiveConstantStressAndInteriorEquilibrium) {
   const auto mesh = this->straight_box(3);
   const auto material = MooneyRivlin<double>::from(moduli);
-  const FullSystem system(SolidElasticity<TypeParam, MooneyRivlin>(mesh, material),
-                          lumped_mass<TypeParam>(mesh, 1.0));
+  const FullSystem system(SolidElasticity<TypeParam, MooneyRivlin>(mesh, material), lumped_mass<TypeParam>(mesh, 1.0));
   const Mat3 F = random_rotation(2) * (Mat3::Identity() + Mat3(random_matrix(3, 3, 0.2, 31)));
   const Vector u = affine_displacement(mesh.nodes, F, {0.1, 0, 0});
   const double volume = lumped_mass<TypeParam>(mesh, 1.0).sum();
@@ -162,11 +161,9 @@ TYPED_TEST(ElementTest, AffineFieldsGiveConstantStressAndInteriorEquilibrium) {
   using Model = SolidElasticity<TypeParam, MooneyRivlin>;
   for (Index e = 0; e < mesh.num_cells(); ++e) {
     Local<Model::local_dofs> u_e;
-    for (int a = 0; a < TypeParam::num_nodes; ++a)
-      u_e.template segment<3>(3 * a) = u.segment<3>(3 * mesh.cells[e][a]);
+    for (int a = 0; a < TypeParam::num_nodes; ++a) u_e.template segment<3>(3 * a) = u.segment<3>(3 * mesh.cells[e][a]);
     for (int g = 0; g < Model::num_points; ++g)
-      EXPECT_TRUE(is_near(system.model().term(e).gradient(u_e, g), F, rounding))
-          << "cell " << e << ", point " << g;
+      EXPECT_TRUE(is_near(system.model().term(e).gradient(u_e, g), F, rounding)) << "cell " << e << ", point " << g;
   }
 }
 
@@ -174,9 +171,8 @@ TYPED_TEST(ElementTest, AffineFieldsGiveConstantStressAndInteriorEquilibrium) {
 // finds.
 TYPED_TEST(ElementTest, AffineBoundaryDisplacementsHaveTheAffineSolution) {
   const auto mesh = this->straight_box(2);
-  const FullSystem system(
-      SolidElasticity<TypeParam, StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from(moduli)),
-      lumped_mass<TypeParam>(mesh, 1000.0));
+  const FullSystem system(SolidElasticity<TypeParam, StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from(moduli)),
+                          lumped_mass<TypeParam>(mesh, 1000.0));
   const Mat3 F = Mat3::Identity() + Mat3(random_matrix(3, 3, 0.08, 32));
   const Vector u = affine_displacement(mesh.nodes, F);
   const NodeNumbering interior(mesh.num_nodes(), this->box_boundary(2));
@@ -271,8 +267,8 @@ double displacement_error(Index n) {
   straighten(mesh);
   const auto material = StVenantKirchhoff<double>::from(moduli);
   const SmoothField exact;
-  const FullSystem system(SolidElasticity<Element, StVenantKirchhoff>(mesh, material),
-                          lumped_mass<Element>(mesh, 1.0), boundary);
+  const FullSystem system(SolidElasticity<Element, StVenantKirchhoff>(mesh, material), lumped_mass<Element>(mesh, 1.0),
+                          boundary);
   Vector load = Vector::Zero(3 * mesh.num_nodes());
   for_fine_points<Element>(mesh, [&](const auto& cell, const auto& N, const Point& X, double volume) {
     const Point b = body_force(material, exact, X);
@@ -335,8 +331,7 @@ TYPED_TEST(ElementTest, LumpedMassesKeepTheCentreOfMass) {
   auto mesh = this->irregular_inside(3);
   straighten(mesh);  // of curved quadratic tets it moves a little
   const Vector mass = lumped_mass<TypeParam>(mesh, 1.0);
-  EXPECT_TRUE(
-      is_near(mesh.nodes.transpose() * mass / mass.sum(), Point::Constant(1.5 * edge), rounding * edge));
+  EXPECT_TRUE(is_near(mesh.nodes.transpose() * mass / mass.sum(), Point::Constant(1.5 * edge), rounding * edge));
 }
 
 TEST(Elements, EveryTypeOfTetSharesItsMassAsDocumented) {
@@ -373,18 +368,15 @@ TYPED_TEST(ElementTest, CellsThatCannotBeAreRefusedByName) {
   EXPECT_EQ(refusal(box), "nothing thrown");
   auto bad = box;
   bad.cells[last][1] = box.num_nodes();
-  EXPECT_THAT(refusal(bad),
-              testing::HasSubstr(name + " names node " + std::to_string(box.num_nodes()) + ","));
+  EXPECT_THAT(refusal(bad), testing::HasSubstr(name + " names node " + std::to_string(box.num_nodes()) + ","));
   bad.cells[last][1] = -1;
   EXPECT_THAT(refusal(bad), testing::HasSubstr(name + " names node -1,"));
   bad.cells[last][1] = box.cells[last][3];
-  EXPECT_THAT(refusal(bad),
-              testing::HasSubstr(name + " names node " + std::to_string(box.cells[last][3]) + " twice"));
+  EXPECT_THAT(refusal(bad), testing::HasSubstr(name + " names node " + std::to_string(box.cells[last][3]) + " twice"));
   bad = box;
   bad.nodes.col(0) *= -1;
-  EXPECT_THAT(refusal(bad),
-              testing::AllOf(testing::HasSubstr(std::string(TypeParam::name) + " 0 has det J = "),
-                             testing::HasSubstr("Gauss point 0")));
+  EXPECT_THAT(refusal(bad), testing::AllOf(testing::HasSubstr(std::string(TypeParam::name) + " 0 has det J = "),
+                                           testing::HasSubstr("Gauss point 0")));
   bad = box;
   bad.nodes.col(2).setZero();
   EXPECT_THAT(refusal(bad), testing::HasSubstr("has det J = "));
@@ -400,9 +392,8 @@ TYPED_TEST(ElementTest, CellsThatCannotBeAreRefusedByName) {
 TEST(Elements, TheGaussPointAtFaultIsNamed) {
   HexMesh hex = hex_box(1, 1, 1, {1, 1, 1});
   hex.nodes.row(hex.cells[0][6]) << 0.1, 0.1, 0.1;  // pushed through its neighbours
-  const std::string message = message_of([&] {
-    SolidElasticity<TrilinearHex, StVenantKirchhoff>(hex, StVenantKirchhoff<double>::from(moduli));
-  });
+  const std::string message = message_of(
+      [&] { SolidElasticity<TrilinearHex, StVenantKirchhoff>(hex, StVenantKirchhoff<double>::from(moduli)); });
   EXPECT_THAT(message, testing::AllOf(testing::HasSubstr("hex 0"), testing::HasSubstr("at Gauss point 6")));
 }
 
@@ -435,14 +426,13 @@ TEST(CellMesh, QuadraticMeshHasOneNodeAmidEachEdge) {
     EXPECT_TRUE(std::equal(corners.tets[e].begin(), corners.tets[e].end(), cell.begin()));
     for (int k = 0; k < 6; ++k) {
       const auto [a, b] = QuadraticTet::edges[k];
-      EXPECT_TRUE(is_near(mesh.nodes.row(cell[4 + k]),
-                          (mesh.nodes.row(cell[a]) + mesh.nodes.row(cell[b])) / 2, rounding * edge));
+      EXPECT_TRUE(is_near(mesh.nodes.row(cell[4 + k]), (mesh.nodes.row(cell[a]) + mesh.nodes.row(cell[b])) / 2,
+                          rounding * edge));
     }
   }
   Index next = corners.num_nodes();  // numbered in order of the corners of their edges
   for (const auto& [a, b] : edges)
-    EXPECT_TRUE(
-        is_near(mesh.nodes.row(next++), (corners.nodes.row(a) + corners.nodes.row(b)) / 2, rounding * edge));
+    EXPECT_TRUE(is_near(mesh.nodes.row(next++), (corners.nodes.row(a) + corners.nodes.row(b)) / 2, rounding * edge));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include <physics/composite_model.hpp>
 #include <physics/surface_heat_loss.hpp>
-#include <tests/support/heat.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/heat.hpp>
 
 #include <gtest/gtest.h>
 

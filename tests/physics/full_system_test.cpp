@@ -3,10 +3,10 @@
 #include <physics/mass.hpp>
 #include <physics/spd_solver.hpp>
 #include <physics/tet_elasticity.hpp>
-#include <tests/support/force_models.hpp>
-#include <tests/support/meshes.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/force_models.hpp>
+#include <tests/support/meshes.hpp>
 #include <tests/support/spring_network.hpp>
 
 #include <Eigen/Dense>
@@ -139,8 +139,8 @@ TEST(FullSystem, ExpandAndRestrictGoBetweenUnknownsAndNodes) {
 
 TEST(FullSystem, ReactionsAtFixedNodesBalanceTheRest) {
   const TetMesh mesh = TetBar<MooneyRivlin>::mesh();
-  const FullSystem<TetElasticity<MooneyRivlin>> system(TetBar<MooneyRivlin>::make(),
-                                                       TetBar<MooneyRivlin>::nodal_mass(), {0, 3});
+  const FullSystem<TetElasticity<MooneyRivlin>> system(TetBar<MooneyRivlin>::make(), TetBar<MooneyRivlin>::nodal_mass(),
+                                                       {0, 3});
   const Vector u = system.expand(random_vector(system.dim(), 0.1 * edge, 3));
   Vector f(u.size());
   system.full_force(u, f);
@@ -177,8 +177,7 @@ TEST(FullSystem, FixedNodesCutTheirComponentsOff) {
   Local<12> u_tet = Local<12>::Zero();
   u_tet.tail<3>() = u;
   EXPECT_TRUE(is_near(system.force(u), model.force(0, u_tet).tail<3>(), 1e-9));
-  EXPECT_TRUE(
-      is_near(Matrix(system.stiffness(u)), model.stiffness(0, u_tet).bottomRightCorner<3, 3>(), 1e-7));
+  EXPECT_TRUE(is_near(Matrix(system.stiffness(u)), model.stiffness(0, u_tet).bottomRightCorner<3, 3>(), 1e-7));
 }
 
 TEST(FullSystem, LoadsOnFixedNodesDoNothing) {

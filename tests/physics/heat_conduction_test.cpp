@@ -1,7 +1,7 @@
 #include <physics/surface_heat_loss.hpp>
-#include <tests/support/heat.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/heat.hpp>
 
 #include <gtest/gtest.h>
 
@@ -160,8 +160,7 @@ TEST(SurfaceHeatLoss, OfAUniformTemperatureIsStefanAndBoltzmannsAndNewtons) {
   const SurfaceHeatLoss loss(mesh.nodes, boundary_faces(mesh), {.film = 7, .emissivity = 0.6, .ambient = 290});
   const FullSystem<SurfaceHeatLoss> system(loss, Vector::Ones(mesh.num_nodes()));
   for (const double theta : {-200.0, 0.0, 80.0, 900.0}) {
-    const double expected =
-        0.1 * (7 * theta + 0.6 * 5.670374419e-8 * (std::pow(290 + theta, 4) - std::pow(290.0, 4)));
+    const double expected = 0.1 * (7 * theta + 0.6 * 5.670374419e-8 * (std::pow(290 + theta, 4) - std::pow(290.0, 4)));
     EXPECT_NEAR(system.force(Vector::Constant(mesh.num_nodes(), theta)).sum(), expected, 1e-10 * std::abs(expected));
   }
 }

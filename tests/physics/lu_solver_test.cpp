@@ -1,9 +1,9 @@
 #include <core/parallel.hpp>
 #include <physics/lu_solver.hpp>
 #include <physics/newton.hpp>
-#include <tests/support/heat.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/heat.hpp>
 
 #include <gtest/gtest.h>
 

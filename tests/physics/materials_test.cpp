@@ -54,10 +54,9 @@ struct FungWithFibres {
   static Fung<double> make() { return Fung<double>::from(moduli, 10, 4, {1, 2, -2}); }
   static constexpr bool isotropic = false;
 };
-using Materials =
-    testing::Types<FromModuli<StVenantKirchhoff>, FromModuli<MooneyRivlin>, FromModuli<NeoHookean>,
-                   FromModuli<StableNeoHookean>, FromModuli<Corotational>, FromModuli<Ogden>, IsotropicFung,
-                   FungWithFibres, FromModuli<EnergyAlone>, FromModuli<StressAlone>>;
+using Materials = testing::Types<FromModuli<StVenantKirchhoff>, FromModuli<MooneyRivlin>, FromModuli<NeoHookean>,
+                                 FromModuli<StableNeoHookean>, FromModuli<Corotational>, FromModuli<Ogden>,
+                                 IsotropicFung, FungWithFibres, FromModuli<EnergyAlone>, FromModuli<StressAlone>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Every, MaterialConformance, Materials);
 
 TEST(IsotropicModuli, ConversionsAgree) {
@@ -82,8 +81,8 @@ TEST(StVenantKirchhoffMaterial, FollowsTheClosedFormsOfStretchAndDilation) {
                         Point(s * (lambda + 2 * mu) * E, lambda * E, lambda * E).asDiagonal().toDenseMatrix(),
                         rounding * moduli.young));
     EXPECT_NEAR(material.energy(dilation), (4.5 * lambda + 3 * mu) * E * E, rounding * moduli.young);
-    EXPECT_TRUE(is_near(material.stress(dilation), s * (3 * lambda + 2 * mu) * E * Mat3::Identity(),
-                        rounding * moduli.young));
+    EXPECT_TRUE(
+        is_near(material.stress(dilation), s * (3 * lambda + 2 * mu) * E * Mat3::Identity(), rounding * moduli.young));
   }
 }
 
@@ -94,16 +93,14 @@ TEST(MooneyRivlinMaterial, FollowsTheClosedFormsOfDilationStretchAndShear) {
     const double J = s * s * s;  // a dilation has no isochoric part
     const Mat3 dilation = s * Mat3::Identity();
     EXPECT_NEAR(material.energy(dilation), material.bulk / 2 * (J - 1) * (J - 1), tolerance);
-    EXPECT_TRUE(is_near(material.stress(dilation), material.bulk * (J - 1) * s * s * Mat3::Identity(),
-                        10 * tolerance));
+    EXPECT_TRUE(is_near(material.stress(dilation), material.bulk * (J - 1) * s * s * Mat3::Identity(), 10 * tolerance));
 
     // uniaxial at J = 1: Mooney's σ₁ − σ₂ = 2 (s² − 1/s) (c₁₀ + c₀₁/s)
     const Mat3 uniaxial = Point(s, 1 / std::sqrt(s), 1 / std::sqrt(s)).asDiagonal();
     const Mat3 sigma = material.stress(uniaxial) * uniaxial.transpose();
     EXPECT_NEAR(material.energy(uniaxial),
                 material.c10 * (s * s + 2 / s - 3) + material.c01 * (2 * s + 1 / (s * s) - 3), tolerance);
-    EXPECT_NEAR(sigma(0, 0) - sigma(1, 1), 2 * (s * s - 1 / s) * (material.c10 + material.c01 / s),
-                10 * tolerance);
+    EXPECT_NEAR(sigma(0, 0) - sigma(1, 1), 2 * (s * s - 1 / s) * (material.c10 + material.c01 / s), 10 * tolerance);
 
     const double gamma = 3 * (s - 1);  // simple shear: τ = 2 (c₁₀ + c₀₁) γ, linear
     Mat3 shear = Mat3::Identity();
@@ -169,8 +166,8 @@ TEST(OgdenMaterial, OfExponentsTwoAndMinusTwoIsMooneyRivlin) {
   const Ogden<double> ogden{2 * mooney.c10, 2, -2 * mooney.c01, -2, 0, 1, mooney.bulk};
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Mat3 F = random_gradient(seed);
-    if (seed == 1) F = Point(1.3, 1.3, 0.8).asDiagonal();                    // two equal stretches
-    if (seed == 2) F = Point(1.3, 1.3 * (1 + 1e-6), 0.8).asDiagonal();       // nearly
+    if (seed == 1) F = Point(1.3, 1.3, 0.8).asDiagonal();               // two equal stretches
+    if (seed == 2) F = Point(1.3, 1.3 * (1 + 1e-6), 0.8).asDiagonal();  // nearly
     if (seed == 3) F = Point(1.3, 1.3 * (1 + 3e-5), 1.3).asDiagonal();
     const double tolerance = 1e-9 * mooney.tangent(F).norm();  // differences of close stretches lose digits
     EXPECT_NEAR(ogden.energy(F), mooney.energy(F), rounding * mooney.bulk) << seed;
@@ -239,7 +236,9 @@ TEST(NearIncompressibility, TensionTendsToTheIncompressibleClosedForm) {
       before = error;
     }
   };
-  follows("neo-hookean", [](auto m) { return NeoHookean<double>::from(m); }, [&](const auto&) { return mu * pull(stretch); });
+  follows(
+      "neo-hookean", [](auto m) { return NeoHookean<double>::from(m); },
+      [&](const auto&) { return mu * pull(stretch); });
   follows(
       "stable-neo-hookean", [](auto m) { return StableNeoHookean<double>::from(m); },
       [&](const auto& some) { return some.mu * (1 - 1 / (I1(stretch) + 1)) * pull(stretch); });

@@ -3,9 +3,9 @@
 #include <physics/mass.hpp>
 #include <physics/newmark.hpp>
 #include <physics/tet_elasticity.hpp>
-#include <tests/support/meshes.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/meshes.hpp>
 #include <tests/support/spring_network.hpp>
 
 #include <Eigen/Eigenvalues>
@@ -46,8 +46,8 @@ State swinging(const System& system) {
 }
 
 template <typename System>
-State run(const System& system, State state, const AffineLoad<SparseMatrix>& load, double duration,
-          Index steps, NewmarkOptions options = {}) {
+State run(const System& system, State state, const AffineLoad<SparseMatrix>& load, double duration, Index steps,
+          NewmarkOptions options = {}) {
   Newmark newmark(system, duration / static_cast<double>(steps), options);
   newmark.balance(load, state);
   for (Index k = 0; k < steps; ++k) {
@@ -78,9 +78,7 @@ TEST(Newmark, AverageAccelerationIsOfSecondOrderOnANonlinearOscillator) {
     options.solver = solver;
     options.beta = beta;
     const auto positions = [&](Index steps) { return run(system, start, no_load(3), 0.5, steps, options).u; };
-    const auto velocities = [&](Index steps) {
-      return run(system, start, no_load(3), 0.5, steps, options).v;
-    };
+    const auto velocities = [&](Index steps) { return run(system, start, no_load(3), 0.5, steps, options).v; };
     EXPECT_NEAR(order(positions, 100), 2, 0.1);
     EXPECT_NEAR(order(velocities, 100), 2, 0.1);
   }
@@ -92,9 +90,7 @@ TEST(Newmark, IsOfSecondOrderOnABarWithDampingGravityAndASpring) {
       system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {{3, 30, {0.05, 0.1, 0}}}});
   NewmarkOptions options{.tolerance = tight};
   options.damping = {.alpha = 0.5, .beta = 2e-3};
-  const auto positions = [&](Index steps) {
-    return run(system, swinging(system), load, 0.16, steps, options).u;
-  };
+  const auto positions = [&](Index steps) { return run(system, swinging(system), load, 0.16, steps, options).u; };
   ASSERT_GT(positions(50).lpNorm<Eigen::Infinity>(), 0.05) << "the motion is to be nonlinear";
   EXPECT_NEAR(order(positions, 200), 2, 0.15);
 }
@@ -161,8 +157,7 @@ TEST(Newmark, DampedVibrationDecaysAsRayleighSays) {
       const double omega_d = std::sqrt(omega * omega - delta * delta);
       const double amplitude = 1e-5, duration = 2.75 * 2 * pi / omega;  // linear regime
       const auto q = [&](double t) {
-        return amplitude * std::exp(-delta * t) *
-               (std::cos(omega_d * t) + delta / omega_d * std::sin(omega_d * t));
+        return amplitude * std::exp(-delta * t) * (std::cos(omega_d * t) + delta / omega_d * std::sin(omega_d * t));
       };
       State start = State::at_rest(system.dim());
       start.u = amplitude * phi;
@@ -186,9 +181,8 @@ TEST(Newmark, DampedVibrationDecaysAsRayleighSays) {
 TEST(Newmark, SpringsPullToTheClosedFormEquilibrium) {
   // two springs at a node that is held by k₀: u = Σ k u* / (k₀ + Σ k)
   const Oscillator system = oscillator(1, 50);
-  Loads loads{.gravity = {0, -9.81, 0},
-              .forces = {{0, {1, 0, 0}}},
-              .springs = {{0, 30, {0.2, 0, 0}}, {0, 20, {0, 0, 0.4}}}};
+  Loads loads{
+      .gravity = {0, -9.81, 0}, .forces = {{0, {1, 0, 0}}}, .springs = {{0, 30, {0.2, 0, 0}}, {0, 20, {0, 0, 0.4}}}};
   NewmarkOptions options;
   options.damping.alpha = 2 * std::sqrt(100.0);  // critical, with all springs
   for (const NonlinearSolver solver : every_solver) {
@@ -228,12 +222,11 @@ TEST(Newmark, BalanceSolvesTheEquationOfMotion) {
   State state = State::at_rest(system.dim());
   state.u = random_vector(system.dim(), 0.01, 1);
   state.v = random_vector(system.dim(), 0.5, 2);
-  const AffineLoad<SparseMatrix> load = system.project(
-      {.gravity = {0, 0, -9.81}, .forces = {{3, {0, 5, 0}}}, .springs = {{7, 300, {0.1, 0, 0}}}});
+  const AffineLoad<SparseMatrix> load =
+      system.project({.gravity = {0, 0, -9.81}, .forces = {{3, {0, 5, 0}}}, .springs = {{7, 300, {0.1, 0, 0}}}});
   newmark.balance(load, state);
   const Vector f = system.force(state.u) + load.stiffness * state.u;
-  const Vector damping =
-      0.4 * system.mass().cwiseProduct(state.v) + 3e-3 * (system.rest_stiffness() * state.v);
+  const Vector damping = 0.4 * system.mass().cwiseProduct(state.v) + 3e-3 * (system.rest_stiffness() * state.v);
   EXPECT_TRUE(is_near(system.mass().cwiseProduct(state.a), load.force - f - damping, 1e-12 * f.norm()));
 }
 
@@ -272,8 +265,7 @@ TEST(Newmark, TheReportedResidualIsThatOfTheEquationOfMotion) {
 
 TEST(Newmark, SolversTakeTheSameTrajectory) {
   const StvkSystem system = bar();
-  const AffineLoad<SparseMatrix> load =
-      system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {}});
+  const AffineLoad<SparseMatrix> load = system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {}});
   NewmarkOptions options{.tolerance = 1e-9};
   const State newton = run(system, swinging(system), load, 0.2, 20, options);
   for (const NonlinearSolver solver : {NonlinearSolver::Bfgs, NonlinearSolver::Broyden}) {
@@ -322,8 +314,7 @@ TEST(Newmark, AFreeBodyFallsAndTumblesAsARigidOneWould) {
               {.tolerance = 1e-9});
   EXPECT_TRUE(is_near(momentum(state), mass * (velocity + duration * gravity), 1e-7 * mass));
   Point moved = Point::Zero();
-  for (Index v = 0; v < mesh.num_nodes(); ++v)
-    moved += system.nodal_mass()[v] / mass * state.u.segment<3>(3 * v);
+  for (Index v = 0; v < mesh.num_nodes(); ++v) moved += system.nodal_mass()[v] / mass * state.u.segment<3>(3 * v);
   EXPECT_TRUE(is_near(moved, velocity * duration + 0.5 * gravity * duration * duration, 1e-7));
 }
 
@@ -380,8 +371,7 @@ TEST(Newmark, NotFiniteInputEndsTheStepAndLeavesTheState) {
     NewmarkOptions options;
     options.solver = solver;
     Newmark newmark(system, 0.01, options);
-    for (const double bad :
-         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
       AffineLoad<SparseMatrix> load = no_load(system.dim());
       State state = swinging(system), before = state;
       load.force[2] = bad;
@@ -423,8 +413,7 @@ TEST(Newmark, APredictorThatInvertsTetsIsNotTheEnd) {
 
 TEST(Newmark, ReportsWhenIterationsDoNotSuffice) {
   const StvkSystem system = bar();
-  const AffineLoad<SparseMatrix> load =
-      system.project({.gravity = {0, 0, -500}, .forces = {}, .springs = {}});
+  const AffineLoad<SparseMatrix> load = system.project({.gravity = {0, 0, -500}, .forces = {}, .springs = {}});
   for (const NonlinearSolver solver : every_solver) {
     NewmarkOptions options{.tolerance = 1e-12, .max_iterations = 1};
     options.solver = solver;
@@ -440,8 +429,7 @@ TEST(Newmark, ReportsWhenIterationsDoNotSuffice) {
 
 TEST(Newmark, MistakesOfTheCallerThrow) {
   const Oscillator system = oscillator(1, 1);
-  for (const double h :
-       {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+  for (const double h : {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
     EXPECT_THROW(Newmark(system, h), std::invalid_argument) << h;
   NewmarkOptions explicit_method;
   explicit_method.beta = 0;

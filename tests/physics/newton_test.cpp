@@ -4,9 +4,9 @@
 #include <physics/newton.hpp>
 #include <physics/quasi_newton.hpp>
 #include <physics/tet_elasticity.hpp>
-#include <tests/support/meshes.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/meshes.hpp>
 
 #include <gtest/gtest.h>
 
@@ -151,8 +151,8 @@ TEST(QuasiNewton, IsExactForALinearProblemWithItsJacobian) {
   const Matrix A = (Matrix(2, 2) << 4, 1, 1, 3).finished();
   const Vector b = Vector::Ones(2);
   DenseObjective objective(
-      2, [&](VectorIn u) { return 0.5 * u.dot(A * u) - b.dot(u); },
-      [&](VectorIn u) { return Vector(A * u - b); }, [&](VectorIn) { return A; });
+      2, [&](VectorIn u) { return 0.5 * u.dot(A * u) - b.dot(u); }, [&](VectorIn u) { return Vector(A * u - b); },
+      [&](VectorIn) { return A; });
   SpdSolver<Matrix> solver;
   with_every_memory([&](auto memory) {
     ASSERT_TRUE(solver.factorize(A));
@@ -164,8 +164,8 @@ TEST(QuasiNewton, IsExactForALinearProblemWithItsJacobian) {
     ASSERT_TRUE(solver.factorize(5 * Matrix::Identity(2, 2)));
     u.setZero();
     memory.clear();
-    const QuasiNewtonReport other = quasi_newton_solve(
-        objective, solver, memory, u, {.tolerance = 1e-12, .max_iterations = 20, .refresh_cost = 100});
+    const QuasiNewtonReport other = quasi_newton_solve(objective, solver, memory, u,
+                                                       {.tolerance = 1e-12, .max_iterations = 20, .refresh_cost = 100});
     EXPECT_EQ(other.status, Status::Converged);
     EXPECT_EQ(other.refreshes, 0);
     EXPECT_LE(other.iterations, (std::is_same_v<decltype(memory), BroydenMemory> ? 5 : 10));
@@ -232,9 +232,7 @@ TEST(Newton, LeavesAMaximumAndASaddleForAMinimum) {
   // x y + (x⁴ + y⁴) / 4: a saddle at 0, where the diagonal of the tangent vanishes, and minima at ±(1, −1)
   DenseObjective saddle(
       2, [](VectorIn u) { return u[0] * u[1] + (std::pow(u[0], 4) + std::pow(u[1], 4)) / 4; },
-      [](VectorIn u) {
-        return Vector((Vector(2) << u[1] + std::pow(u[0], 3), u[0] + std::pow(u[1], 3)).finished());
-      },
+      [](VectorIn u) { return Vector((Vector(2) << u[1] + std::pow(u[0], 3), u[0] + std::pow(u[1], 3)).finished()); },
       [](VectorIn u) { return Matrix((Matrix(2, 2) << 3 * u[0] * u[0], 1, 1, 3 * u[1] * u[1]).finished()); });
   for (const Vector& start : {(Vector(2) << 0.1, 0.0).finished(), (Vector(2) << 0.0, 1e-9).finished()}) {
     Vector u = start;
@@ -246,9 +244,7 @@ TEST(Newton, LeavesAMaximumAndASaddleForAMinimum) {
   // x² − y² + y⁴: the trace of the tangent vanishes at 0, minima at (0, ±1/√2)
   DenseObjective traceless(
       2, [](VectorIn u) { return u[0] * u[0] - u[1] * u[1] + std::pow(u[1], 4); },
-      [](VectorIn u) {
-        return Vector((Vector(2) << 2 * u[0], -2 * u[1] + 4 * std::pow(u[1], 3)).finished());
-      },
+      [](VectorIn u) { return Vector((Vector(2) << 2 * u[0], -2 * u[1] + 4 * std::pow(u[1], 3)).finished()); },
       [](VectorIn u) { return Matrix((Matrix(2, 2) << 2, 0, 0, -2 + 12 * u[1] * u[1]).finished()); });
   Vector u = (Vector(2) << 1, 1e-12).finished();
   const Report report = newton_minimize(traceless, solver, u, {.tolerance = 1e-10, .max_iterations = 100});
@@ -323,8 +319,7 @@ TEST(Newton, StopsAtTheLimitOfIterationsAndSaysSo) {
 TEST(Newton, ShortensStepsThatLeaveTheDomain) {
   // −log x + x: the full step from 2.5 goes to x < 0, where the function is undefined
   DenseObjective barrier(
-      1,
-      [](VectorIn u) { return u[0] > 0 ? u[0] - std::log(u[0]) : std::numeric_limits<double>::infinity(); },
+      1, [](VectorIn u) { return u[0] > 0 ? u[0] - std::log(u[0]) : std::numeric_limits<double>::infinity(); },
       [](VectorIn u) {
         return Vector::Constant(1, u[0] > 0 ? 1 - 1 / u[0] : std::numeric_limits<double>::quiet_NaN());
       },
@@ -343,9 +338,8 @@ TEST(Newton, EndsWithNotFiniteWhereTheStartIsNot) {
   u[4] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(newton_minimize(c.problem, solver, u).status, Status::NotFinite);
   ASSERT_TRUE(solver.factorize(c.system.rest_stiffness()));
-  with_every_memory([&](auto memory) {
-    EXPECT_EQ(quasi_newton_solve(c.problem, solver, memory, u).status, Status::NotFinite);
-  });
+  with_every_memory(
+      [&](auto memory) { EXPECT_EQ(quasi_newton_solve(c.problem, solver, memory, u).status, Status::NotFinite); });
   EXPECT_EQ(u.array().isNaN().count(), 1) << "u stays as it was";
 }
 

@@ -44,8 +44,8 @@ TEST(Plugin, AddsItsLawOnce) {
   const IsotropicModuli moduli{.young = 1e5, .poisson = 0.4};
   const auto model = [&](const char* law, const MaterialLaw::Named& parameters) {
     const std::vector<double> values = material_law(law).values(moduli, parameters);
-    return material_law(law).tets(
-        mesh, Eigen::Map<const RowMatrix>(values.data(), 1, static_cast<Index>(values.size())), {});
+    return material_law(law).tets(mesh,
+                                  Eigen::Map<const RowMatrix>(values.data(), 1, static_cast<Index>(values.size())), {});
   };
   const auto soft = model("gent", {{"limit", 1e7}});
   const auto mooney = model("mooney-rivlin", {{"c10", moduli.shear() / 2}, {"c01", 0}});
@@ -62,7 +62,8 @@ TEST(Plugin, IsRefusedWithItsNameAndTheReason) {
   };
   refused(folder / "nowhere.so", HasSubstr("no such file"));
   refused(folder / "libno_plugin.so", HasSubstr("not a plug-in of Supple"));
-  refused(folder / "libother_version.so", AllOf(HasSubstr("Supple 0.0.9"), HasSubstr("expected Supple " SUPPLE_VERSION)));
+  refused(folder / "libother_version.so",
+          AllOf(HasSubstr("Supple 0.0.9"), HasSubstr("expected Supple " SUPPLE_VERSION)));
   const auto text = std::filesystem::temp_directory_path() / "supple_no_library.so";
   std::ofstream(text) << "not a library";
   refused(text, HasSubstr("not a shared library"));
@@ -79,8 +80,11 @@ TEST(Plugin, ThatFailsHalfWayLeavesNothing) {
 TEST(MaterialLaws, NameWhatTheyDoNotKnow) {
   EXPECT_THAT([] { material_law("rubber"); },
               ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("'rubber'"), HasSubstr("stvk, mooney-rivlin"))));
-  EXPECT_THAT([] { material_law("ogden").values({}, {{"mu4", 1}}); },
-              ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("'mu4'"), HasSubstr("mu1, alpha1"))));
+  EXPECT_THAT(
+      [] {
+        material_law("ogden").values({}, {{"mu4", 1}});
+      },
+      ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("'mu4'"), HasSubstr("mu1, alpha1"))));
   EXPECT_EQ(material_law("stvk").values({.young = 2, .poisson = 0}, {{"lambda", 7}}), (std::vector<double>{7, 1}));
 }
 
@@ -94,7 +98,8 @@ TEST(MaterialLaws, RefuseParametersOfWhichRestIsNoStableEquilibrium) {
   refused("ogden", {{"alpha1", 0}}, "energy at rest is not finite");
   refused("neo-hookean", {{"lambda", -1e9}}, "not stable");
   refused("corotational", {{"mu", std::numeric_limits<double>::quiet_NaN()}}, "not finite");
-  for (const std::string& law : material_laws()) EXPECT_NO_THROW((void)material_law(law).values({.young = 7, .poisson = 0.2}));
+  for (const std::string& law : material_laws())
+    EXPECT_NO_THROW((void)material_law(law).values({.young = 7, .poisson = 0.2}));
 }
 
 TEST(MaterialLaws, GiveTheModelsOfTheirTemplates) {

@@ -4,9 +4,9 @@
 #include <physics/newton.hpp>
 #include <physics/spring_model.hpp>
 #include <testing/force_model_conformance.hpp>
-#include <tests/support/meshes.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/meshes.hpp>
 #include <tests/support/spring_network.hpp>
 
 #include <Eigen/Dense>
@@ -68,8 +68,7 @@ struct BentRods {
     for (Index v = 0; v < 6; ++v) nodes.row(v) += line(5, length).row(v) * 2;
     for (Index v = 5; v < 11; ++v) {
       const double angle = 2 * pi * static_cast<double>(v) / 6;
-      nodes.row(v) =
-          0.4 * nodes.row(v) + 2 * length * Eigen::RowVector3d(std::cos(angle), std::sin(angle), 0);
+      nodes.row(v) = 0.4 * nodes.row(v) + 2 * length * Eigen::RowVector3d(std::cos(angle), std::sin(angle), 0);
     }
     return {nodes, {chain(6), {5, 6, 7, 8, 9, 10, 5}}, {balanced(length), balanced(0.8 * length)}};
   }
@@ -228,8 +227,7 @@ TEST(ElasticRod, EveryEdgeIsStretchedOnce) {
       return (rods.rest_positions().row(to) - rods.rest_positions().row(from)).norm();
     };
     double expected = 0;  // ½ E A ε² a length
-    for (Index v = 0; v + 1 < (is_straight ? 7 : 6); ++v)
-      expected += balanced(0.1).stretch * length(v, v + 1);
+    for (Index v = 0; v + 1 < (is_straight ? 7 : 6); ++v) expected += balanced(0.1).stretch * length(v, v + 1);
     if (!is_straight)
       for (Index v = 5; v < 11; ++v) expected += balanced(0.08).stretch * length(v, v == 10 ? 5 : v + 1);
     expected *= 0.5 * growth * growth;
@@ -266,9 +264,8 @@ TEST(ElasticRod, CirclesHaveTheirBendingEnergyToSecondOrder) {
 struct Cantilever {
   Index n;  // free edges
   double length = 1, l = length / (static_cast<double>(n) + 0.5);
-  FullSystem<ElasticRod> system{ElasticRod(line(n + 1, l), {chain(n + 2)}, {.stretch = 1e6, .bending = 1}),
-                                Vector::Ones(n + 2),
-                                {0, 1}};
+  FullSystem<ElasticRod> system{
+      ElasticRod(line(n + 1, l), {chain(n + 2)}, {.stretch = 1e6, .bending = 1}), Vector::Ones(n + 2), {0, 1}};
 
   Vector tip_load(double P) const {
     Vector f = Vector::Zero(system.dim());
@@ -302,8 +299,7 @@ TEST(ElasticRod, LargeDeflectionsAreThoseOfTheElastica) {
   Vector u = Vector::Zero(beam.system.dim());
   for (const double P : {0.5, 1.5, 3.0, 5.0}) {
     Equilibrium loaded(beam.system, AffineLoad<SparseMatrix>{beam.tip_load(P), {}});
-    ASSERT_EQ(newton_minimize(loaded, solver, u, {.tolerance = 1e-8, .max_iterations = 200}).status,
-              Status::Converged);
+    ASSERT_EQ(newton_minimize(loaded, solver, u, {.tolerance = 1e-8, .max_iterations = 200}).status, Status::Converged);
   }
   const Point tip = u.tail<3>();
   EXPECT_TRUE(is_near(tip, Point(-0.3876283607, 0.7137915236, 0), 2e-4));  // 1 / n² times a half

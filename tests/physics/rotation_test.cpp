@@ -12,8 +12,12 @@ using Mat3 = Matrix3<double>;
 
 /// Of all kinds: close to a rotation, far from it, inverted, flat, in other units.
 std::vector<Mat3> gradients() {
-  std::vector<Mat3> result{Mat3::Identity(), Point(0.2, 1, 1).asDiagonal(), Point(-0.2, 1, 1.5).asDiagonal(),
-                           Point(0, 1, 2).asDiagonal(), 1e-9 * random_rotation(8), 1e9 * random_rotation(9)};
+  std::vector<Mat3> result{Mat3::Identity(),
+                           Point(0.2, 1, 1).asDiagonal(),
+                           Point(-0.2, 1, 1.5).asDiagonal(),
+                           Point(0, 1, 2).asDiagonal(),
+                           1e-9 * random_rotation(8),
+                           1e9 * random_rotation(9)};
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     result.push_back(random_rotation(seed));
     result.push_back(random_rotation(seed) * (Mat3::Identity() + Mat3(random_matrix(3, 3, 0.5, seed))));

@@ -2,8 +2,8 @@
 #include <physics/mass.hpp>
 #include <physics/static_solver.hpp>
 #include <physics/tet_elasticity.hpp>
-#include <tests/support/meshes.hpp>
 #include <testing/near.hpp>
+#include <tests/support/meshes.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
@@ -16,8 +16,7 @@ using System = FullSystem<TetElasticity<StVenantKirchhoff>>;
 /// A clamped bar that a spring at its free end pulls aside by a third of its length.
 struct PulledBar {
   TetMesh mesh = perturbed(kuhn_box(4, 1, 1, 0.1), 0.005, 3);
-  System system{TetElasticity<StVenantKirchhoff>(
-                    mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.3})),
+  System system{TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.3})),
                 lumped_mass(mesh, 1000.0), nodes_where(mesh, [](const Point& x) { return x[0] < 0.05; })};
   Index end = nodes_where(mesh, [](const Point& x) { return x[0] > 0.35 && x[1] > 0.05 && x[2] > 0.05; })[0];
 
@@ -124,7 +123,8 @@ TEST(Bfgs, MinimisesRosenbrocksFunction) {
   EXPECT_TRUE(is_near(x, Vector::Ones(2), 1e-8));
   EXPECT_LT(report.iterations, 60);  // some 35 in the literature
 
-  for (const NloptMethod method : {NloptMethod::Lbfgs, NloptMethod::VariableMetric, NloptMethod::TruncatedNewton, NloptMethod::Slsqp}) {
+  for (const NloptMethod method :
+       {NloptMethod::Lbfgs, NloptMethod::VariableMetric, NloptMethod::TruncatedNewton, NloptMethod::Slsqp}) {
     x << -1.2, 1;
     const Report nlopt = minimize_by_nlopt(
         [&](VectorIn at, VectorOut g) {

@@ -2,10 +2,10 @@
 #include <physics/mass.hpp>
 #include <physics/newton.hpp>
 #include <physics/tet_elasticity.hpp>
-#include <tests/support/boundary_values.hpp>
-#include <tests/support/meshes.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/boundary_values.hpp>
+#include <tests/support/meshes.hpp>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -46,8 +46,7 @@ TYPED_TEST(TetElasticityTest, RigidMotionsCostNothing) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Vector u = affine_displacement(this->mesh.nodes, random_rotation(seed), {0.3, -2, 1});
     EXPECT_NEAR(this->system.energy(u), 0, rounding * moduli.young * this->volume);
-    EXPECT_TRUE(
-        is_near(this->system.force(u), Vector::Zero(u.size()), rounding * moduli.young * edge * edge));
+    EXPECT_TRUE(is_near(this->system.force(u), Vector::Zero(u.size()), rounding * moduli.young * edge * edge));
   }
 }
 
@@ -82,16 +81,14 @@ TYPED_TEST(TetElasticityTest, AffineFieldsGiveConstantStressAndInteriorEquilibri
   const Vector u = affine_displacement(this->mesh.nodes, F, {0.1, 0, 0});
   const Mat3 P = this->material.stress(F);
   const Vector f = this->system.force(u);
-  EXPECT_NEAR(this->system.energy(u), this->volume * this->material.energy(F),
-              rounding * moduli.young * this->volume);
+  EXPECT_NEAR(this->system.energy(u), this->volume * this->material.energy(F), rounding * moduli.young * this->volume);
   const std::vector<Index> boundary = boundary_nodes(this->mesh);
   ASSERT_EQ(this->mesh.num_nodes() - static_cast<Index>(boundary.size()), 8);
   for (Index v = 0; v < this->mesh.num_nodes(); ++v)
     if (!std::binary_search(boundary.begin(), boundary.end(), v)) {
       EXPECT_TRUE(is_near(f.segment<3>(3 * v), Point::Zero(), rounding * f.norm())) << "node " << v;
     }
-  const Mat3 moments =
-      Eigen::Map<const Points>(f.data(), this->mesh.num_nodes(), 3).transpose() * this->mesh.nodes;
+  const Mat3 moments = Eigen::Map<const Points>(f.data(), this->mesh.num_nodes(), 3).transpose() * this->mesh.nodes;
   EXPECT_TRUE(is_near(moments, this->volume * P, rounding * P.norm()));
   for (Index e = 0; e < this->mesh.num_tets(); ++e) {
     Local<12> u_e;
@@ -120,8 +117,7 @@ TYPED_TEST(TetElasticityTest, AffineBoundaryDisplacementsHaveTheAffineSolution) 
 TYPED_TEST(TetElasticityTest, EveryTetHasItsOwnMaterial) {
   std::vector<typename TestFixture::Material> materials;
   for (Index e = 0; e < this->mesh.num_tets(); ++e)
-    materials.push_back(
-        TestFixture::Material::from({.young = 1e4 * static_cast<double>(e + 1), .poisson = 0.1}));
+    materials.push_back(TestFixture::Material::from({.young = 1e4 * static_cast<double>(e + 1), .poisson = 0.1}));
   const typename TestFixture::Model model(this->mesh, materials);
   const Mat3 F = Mat3::Identity() + Mat3(random_matrix(3, 3, 0.2, 33));
   const Vector u = affine_displacement(this->mesh.nodes, F);

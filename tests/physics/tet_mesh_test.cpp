@@ -1,7 +1,7 @@
 #include <physics/tet_mesh.hpp>
-#include <tests/support/meshes.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/meshes.hpp>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -116,8 +116,7 @@ TEST(TetMesh, ConnectedComponentsAreNumberedByTheirFirstNodes) {
   three.tets.push_back({0, 1, 2, 2 * box.num_nodes()});
   components = connected_components(three);
   EXPECT_EQ(components.count, 2);
-  for (Index v = 0; v < three.num_nodes(); ++v)
-    EXPECT_EQ(components.of_node[v], v / box.num_nodes() == 1 ? 1 : 0) << v;
+  for (Index v = 0; v < three.num_nodes(); ++v) EXPECT_EQ(components.of_node[v], v / box.num_nodes() == 1 ? 1 : 0) << v;
 
   // a node without tets is a component of its own
   TetMesh isolated = single_tet();

@@ -1,7 +1,7 @@
 #include <physics/mass.hpp>
 #include <physics/tet_mesh.hpp>
-#include <tests/support/meshes.hpp>
 #include <testing/near.hpp>
+#include <tests/support/meshes.hpp>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -64,8 +64,7 @@ TEST(TriangleMesh, FlapsAndBoundaryEdgesTogetherAreTheSidesOfTheTriangles) {
       EXPECT_EQ(sides.erase({a, b}), 1u);
       EXPECT_EQ(sides.erase({b, a}), 1u);
       const auto has_corners = [&](Index t, Triangle corners) {
-        std::rotate(corners.begin(), std::find(corners.begin(), corners.end(), mesh.triangles[t][0]),
-                    corners.end());
+        std::rotate(corners.begin(), std::find(corners.begin(), corners.end(), mesh.triangles[t][0]), corners.end());
         return mesh.triangles[t] == corners;
       };
       EXPECT_TRUE(has_corners(flap.triangles[0], {a, b, c}));
@@ -162,38 +161,32 @@ TEST(CheckTriangleMesh, NamesWhatIsAtFault) {
     return message(mesh);
   };
   EXPECT_EQ(changed([](auto& m) { m.triangles[1][2] = 6; }), "triangle 1 names node 6, which does not exist");
-  EXPECT_EQ(changed([](auto& m) { m.triangles[1][2] = -1; }),
-            "triangle 1 names node -1, which does not exist");
+  EXPECT_EQ(changed([](auto& m) { m.triangles[1][2] = -1; }), "triangle 1 names node -1, which does not exist");
   EXPECT_EQ(changed([](auto& m) { m.triangles[2][2] = 1; }), "triangle 2 names node 1 twice");
   EXPECT_EQ(changed([](auto& m) { m.triangles.resize(2); }), "node 2 belongs to no triangle");
   EXPECT_EQ(changed([](auto& m) { m.nodes(4, 2) = std::numeric_limits<double>::infinity(); }),
             "node 4 has a coordinate that is not finite");
   EXPECT_EQ(changed([](auto& m) { m.nodes.row(2) = 2.5 * m.nodes.row(5) - 1.5 * m.nodes.row(1); }),
             "triangle 2 has zero area: its nodes lie in a line");
-  EXPECT_EQ(changed([](auto& m) { m.nodes *= 1e200; }),
-            "the area of triangle 0 is beyond the range of numbers");
-  EXPECT_EQ(changed([](auto& m) { m.nodes *= 1e-110; }),
-            "the area of triangle 0 is beyond the range of numbers");
+  EXPECT_EQ(changed([](auto& m) { m.nodes *= 1e200; }), "the area of triangle 0 is beyond the range of numbers");
+  EXPECT_EQ(changed([](auto& m) { m.nodes *= 1e-110; }), "the area of triangle 0 is beyond the range of numbers");
   EXPECT_EQ(changed([](auto& m) {
               m.triangles.push_back({4, 1, 0});
             }),
             "triangle 0 and triangle 4 have the same three nodes");
-  EXPECT_EQ(
-      changed([](auto& m) {
-        m.triangles.push_back({0, 5, 4});
-      }),
-      "triangle 0, triangle 1 and triangle 4 share their edge (0, 4): at most two triangles can meet at "
-      "an edge");
-  EXPECT_EQ(
-      changed([](auto& m) { std::swap(m.triangles[1][0], m.triangles[1][1]); }),
-      "triangle 0 and triangle 1 run along their common edge (0, 4) in the same direction: one of them is "
-      "turned over");
+  EXPECT_EQ(changed([](auto& m) {
+              m.triangles.push_back({0, 5, 4});
+            }),
+            "triangle 0, triangle 1 and triangle 4 share their edge (0, 4): at most two triangles can meet at "
+            "an edge");
+  EXPECT_EQ(changed([](auto& m) { std::swap(m.triangles[1][0], m.triangles[1][1]); }),
+            "triangle 0 and triangle 1 run along their common edge (0, 4) in the same direction: one of them is "
+            "turned over");
   TriangleMesh turned = good;
   std::swap(turned.triangles[1][0], turned.triangles[1][1]);
-  EXPECT_EQ(
-      message(turned, {.node = {10, 20, 30, 40, 50, 60}, .triangle = {7, 8, 9, 10}}),
-      "triangle 7 and triangle 8 run along their common edge (10, 50) in the same direction: one of them "
-      "is turned over");
+  EXPECT_EQ(message(turned, {.node = {10, 20, 30, 40, 50, 60}, .triangle = {7, 8, 9, 10}}),
+            "triangle 7 and triangle 8 run along their common edge (10, 50) in the same direction: one of them "
+            "is turned over");
 }
 
 TEST(LumpedMassOfAShell, SumsToTheMassOfTheSheet) {

@@ -26,8 +26,8 @@ TEST(AnasaziAdapter, PassesAnasazisTestOfVectors) {
 
 TEST(AnasaziAdapter, PassesAnasazisTestOfOperators) {
   const Teuchos::RCP<const Multivector> prototype = vectors(rows, 5);
-  const auto op = Teuchos::rcp(new BlockOperator{
-      [](MatrixIn x, MatrixOut y) { y = Vector::LinSpaced(x.rows(), -1, 2).asDiagonal() * x; }});
+  const auto op = Teuchos::rcp(
+      new BlockOperator{[](MatrixIn x, MatrixOut y) { y = Vector::LinSpaced(x.rows(), -1, 2).asDiagonal() * x; }});
   EXPECT_TRUE((Anasazi::TestOperatorTraits<double, Multivector, BlockOperator>(loud(), prototype, op)));
 }
 

@@ -24,8 +24,7 @@ struct PcaCase {
   static auto make() { return system(); }
   static PcaBasis builder() { return {.snapshots = random_snapshots(make(), 7, 20), .dimension = 5}; }
 };
-using PcaCases =
-    testing::Types<PcaCase<clamped_bar>, PcaCase<free_bar>, PcaCase<free_bars>, PcaCase<held_plate>>;
+using PcaCases = testing::Types<PcaCase<clamped_bar>, PcaCase<free_bar>, PcaCase<free_bars>, PcaCase<held_plate>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Pca, SubspaceBuilderConformance, PcaCases);
 
 template <auto system, Index num_weights>
@@ -33,9 +32,9 @@ struct SkinningCase {
   static auto make() { return system(); }
   static SkinningModes builder() { return {.num_weights = num_weights}; }
 };
-using SkinningCases = testing::Types<SkinningCase<clamped_bar, 4>, SkinningCase<free_bar, 4>,
-                                     SkinningCase<free_bars, 5>, SkinningCase<clamped_and_free_bars, 3>,
-                                     SkinningCase<held_plate, 3>, SkinningCase<free_plate, 3>>;
+using SkinningCases =
+    testing::Types<SkinningCase<clamped_bar, 4>, SkinningCase<free_bar, 4>, SkinningCase<free_bars, 5>,
+                   SkinningCase<clamped_and_free_bars, 3>, SkinningCase<held_plate, 3>, SkinningCase<free_plate, 3>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Skinning, SubspaceBuilderConformance, SkinningCases);
 
 template <auto system>
@@ -43,8 +42,8 @@ struct AffineCase {
   static auto make() { return system(); }
   static AffineBasis builder() { return {}; }
 };
-using AffineCases = testing::Types<AffineCase<free_bar>, AffineCase<free_bars>,
-                                   AffineCase<clamped_and_free_bars>, AffineCase<free_plate>>;
+using AffineCases = testing::Types<AffineCase<free_bar>, AffineCase<free_bars>, AffineCase<clamped_and_free_bars>,
+                                   AffineCase<free_plate>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Affine, SubspaceBuilderConformance, AffineCases);
 
 template <auto system, Index num_modes>
@@ -57,14 +56,11 @@ struct JoinedCase {
 template <auto system, Index num_modes>
 struct JoinedDenseCase {
   static auto make() { return system(); }
-  static auto builder() {
-    return JoinedBasis{ModalBasis{.num_modes = num_modes}, SkinningModes{.num_weights = 3}};
-  }
+  static auto builder() { return JoinedBasis{ModalBasis{.num_modes = num_modes}, SkinningModes{.num_weights = 3}}; }
 };
-using JoinedCases =
-    testing::Types<JoinedCase<clamped_bar, 4>, JoinedCase<free_bar, 9>, JoinedCase<free_bars, 15>,
-                   JoinedCase<held_plate, 4>, JoinedDenseCase<clamped_bar, 5>, JoinedDenseCase<free_bar, 9>,
-                   JoinedDenseCase<free_plate, 9>>;
+using JoinedCases = testing::Types<JoinedCase<clamped_bar, 4>, JoinedCase<free_bar, 9>, JoinedCase<free_bars, 15>,
+                                   JoinedCase<held_plate, 4>, JoinedDenseCase<clamped_bar, 5>,
+                                   JoinedDenseCase<free_bar, 9>, JoinedDenseCase<free_plate, 9>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Joined, SubspaceBuilderConformance, JoinedCases);
 
 namespace {
@@ -134,8 +130,7 @@ TEST(PcaBasis, RefusesSnapshotsThatDoNotFit) {
   bad = good;
   const Index fixed = system.numbering().fixed_nodes()[2];
   bad(3 * fixed + 1, 3) = 1e-3;
-  EXPECT_THAT(refusal({.snapshots = bad}),
-              testing::HasSubstr("node " + std::to_string(fixed) + ", which is fixed"));
+  EXPECT_THAT(refusal({.snapshots = bad}), testing::HasSubstr("node " + std::to_string(fixed) + ", which is fixed"));
   EXPECT_THAT(refusal({.snapshots = good, .dimension = -1}), testing::HasSubstr("dimension"));
   for (const double share : {0.0, 1.5, std::nan("")})
     EXPECT_THAT(refusal({.snapshots = good, .energy = share}), testing::HasSubstr("share"));
@@ -144,8 +139,8 @@ TEST(PcaBasis, RefusesSnapshotsThatDoNotFit) {
 TEST(SkinningModes, HaveAscendingEnergies) {
   for (const StvkBar& system : {clamped_bar(), free_bar(), free_bars()}) {
     const RestState rest = rest_state(system);
-    const Index num_free = static_cast<Index>(
-        find_free_components(rest.stencils, rest.stencil_size, rest.numbering).free.size());
+    const Index num_free =
+        static_cast<Index>(find_free_components(rest.stencils, rest.stencil_size, rest.numbering).free.size());
     const SkinningWeights weights = SkinningModes{.num_weights = 8}.weights(rest);
     const Matrix gram = weights.W.transpose() * rest.nodal_mass.asDiagonal() * weights.W;
     EXPECT_TRUE(is_near(gram, Matrix::Identity(8, 8), 1e-12));
@@ -172,8 +167,7 @@ TEST(SkinningModes, HaveAscendingEnergies) {
 
 TEST(SkinningModes, HaveTwelveDimensionsAWeightAndAreNested) {
   for (const StvkBar& system : {clamped_bar(), free_bar(), clamped_and_free_bars()}) {
-    const NodalBasis few = SkinningModes{.num_weights = 3}(system),
-                     more = SkinningModes{.num_weights = 6}(system);
+    const NodalBasis few = SkinningModes{.num_weights = 3}(system), more = SkinningModes{.num_weights = 6}(system);
     EXPECT_EQ(few.dim(), 36);
     EXPECT_EQ(more.dim(), 72);
     EXPECT_LT(outside(more, system, few.dense()), 1e-6);
@@ -186,18 +180,15 @@ TEST(SkinningModes, OfFreeObjectsContainAllAffineMotions) {
     const NodalBasis basis = SkinningModes{.num_weights = 2}(system);
     for (std::uint64_t seed : {1, 2, 3})
       EXPECT_LT(outside(basis, system,
-                        affine_displacement(system.model().rest_positions(), random_matrix(3, 3, 2, seed),
-                                            {1, 2, 3})),
+                        affine_displacement(system.model().rest_positions(), random_matrix(3, 3, 2, seed), {1, 2, 3})),
                 1e-12);
     EXPECT_LT(outside(basis, system, AffineBasis{}(system).dense()), 1e-12) << "of each part";
   }
 }
 
 TEST(SkinningModes, SayWhichNumbersOfWeightsAreImpossible) {
-  EXPECT_THAT(message([] { (void)SkinningModes{.num_weights = 1}(free_bars()); }),
-              testing::HasSubstr("at least 2"));
-  EXPECT_THAT(message([] { (void)SkinningModes{.num_weights = 0}(clamped_bar()); }),
-              testing::HasSubstr("at least 1"));
+  EXPECT_THAT(message([] { (void)SkinningModes{.num_weights = 1}(free_bars()); }), testing::HasSubstr("at least 2"));
+  EXPECT_THAT(message([] { (void)SkinningModes{.num_weights = 0}(clamped_bar()); }), testing::HasSubstr("at least 1"));
   EXPECT_THAT(message([] { (void)SkinningModes{.num_weights = 1000}(clamped_bar()); }),
               testing::HasSubstr("number of weights is 1000"));
 }
@@ -220,8 +211,7 @@ TEST(JoinedBasis, ContainsBoth) {
     EXPECT_EQ(joined.report.dropped, a.report.dropped + b.report.dropped + dependent);
     EXPECT_LT(outside(joined, system, a.dense()), 1e-10);
     EXPECT_LT(outside(joined, system, b.dense()), 1e-10);
-    EXPECT_TRUE(
-        is_near(joined.dense().leftCols(a.dim()), a.dense(), 1e-11 * a.dense().cwiseAbs().maxCoeff()));
+    EXPECT_TRUE(is_near(joined.dense().leftCols(a.dim()), a.dense(), 1e-11 * a.dense().cwiseAbs().maxCoeff()));
     return joined;
   };
   const SkinningModes skinning{.num_weights = 3};

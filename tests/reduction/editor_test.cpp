@@ -2,9 +2,9 @@
 #include <reduction/galerkin_system.hpp>
 #include <reduction/modal_basis.hpp>
 #include <reduction/reduced_system.hpp>
-#include <tests/support/bars.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/bars.hpp>
 
 #include <gmock/gmock.h>
 
@@ -137,7 +137,8 @@ TEST(Editor, MethodsAgreeInTheReducedSpaceAndWithTheFullSystemWhereTheSubspaceIs
   full.move(1, HeldBar::bend(0.5));
   ASSERT_EQ(full.solve().status, Status::Converged);
   for (const StaticMethod method : {StaticMethod::Newton, StaticMethod::Bfgs, StaticMethod::Nlopt}) {
-    auto editor = bar.editor(reduced, {.method = method, .tolerance = method == StaticMethod::Nlopt ? 1e-6 : 1e-8, .max_iterations = 500});
+    auto editor = bar.editor(
+        reduced, {.method = method, .tolerance = method == StaticMethod::Nlopt ? 1e-6 : 1e-8, .max_iterations = 500});
     editor.move(1, HeldBar::bend(0.5));
     ASSERT_EQ(editor.solve().status, Status::Converged) << static_cast<int>(method);
     EXPECT_TRUE(is_near(subspace->reconstruct(editor.state()), full.state(), 1e-4 * full.state().norm()));
@@ -173,7 +174,8 @@ TEST(Editor, HandlesComeAndGo) {
   editor.move(1, HeldBar::bend(0.3));
   ASSERT_EQ(editor.solve().status, Status::Converged);
   const Vector bent = editor.state();
-  const Index middle = editor.add({nodes_where(bar.mesh, [](const Point& x) { return std::abs(x[0] - 0.3) < 0.05; }), 20, 1000.0, 3});
+  const Index middle =
+      editor.add({nodes_where(bar.mesh, [](const Point& x) { return std::abs(x[0] - 0.3) < 0.05; }), 20, 1000.0, 3});
   editor.move(middle, RigidMotion{.translation = Point(0, 0.05, 0)});
   ASSERT_EQ(editor.solve().status, Status::Converged);
   EXPECT_GT((editor.state() - bent).norm(), 1e-3);

@@ -48,8 +48,8 @@ SparseMatrix cube_laplacian(Index n) {
       for (Index x = 0; x < n; ++x) {
         const Index i = index(x, y, z);
         entries.emplace_back(i, i, 6);
-        for (const Index j : {x > 0 ? index(x - 1, y, z) : -1, y > 0 ? index(x, y - 1, z) : -1,
-                              z > 0 ? index(x, y, z - 1) : -1})
+        for (const Index j :
+             {x > 0 ? index(x - 1, y, z) : -1, y > 0 ? index(x, y - 1, z) : -1, z > 0 ? index(x, y, z - 1) : -1})
           if (j >= 0) entries.emplace_back(i, j, -1), entries.emplace_back(j, i, -1);
       }
   return from_triplets(n * n * n, entries);
@@ -130,17 +130,14 @@ void expect_eigenpairs(const SparseMatrix& K, const Vector& M, const Matrix& rig
   const Matrix gram = pairs.vectors.transpose() * M.asDiagonal() * pairs.vectors;
   EXPECT_LE((gram - Matrix::Identity(gram.rows(), gram.cols())).norm(), 1e-12);
   if (rigid.cols() > 0) {
-    EXPECT_LE((rigid.transpose() * M.asDiagonal() * pairs.vectors).norm(),
-              1e-11 * (M.asDiagonal() * rigid).norm());
+    EXPECT_LE((rigid.transpose() * M.asDiagonal() * pairs.vectors).norm(), 1e-11 * (M.asDiagonal() * rigid).norm());
   }
   for (Index j = 0; j < pairs.omega_squared.size(); ++j) {
     EXPECT_GE(pairs.omega_squared[j], pairs.omega_squared[std::max<Index>(j - 1, 0)]);
     const Vector phi = pairs.vectors.col(j);
     const Vector force = K * phi - pairs.omega_squared[j] * M.cwiseProduct(phi);
     const double norm = std::sqrt(force.dot(force.cwiseQuotient(M)));
-    EXPECT_LE(norm,
-              std::max(tolerance * (pairs.omega_squared[j] + pairs.shift), 1e-13 * K.coeffs().maxCoeff()))
-        << j;
+    EXPECT_LE(norm, std::max(tolerance * (pairs.omega_squared[j] + pairs.shift), 1e-13 * K.coeffs().maxCoeff())) << j;
     EXPECT_LE(phi.cwiseAbs().maxCoeff(), (1 + 1e-6) * phi.maxCoeff()) << j;  // the largest entry is positive
   }
 }
@@ -274,8 +271,7 @@ TEST(Eigensolver, CountsTheMotionsOfAHinge) {
     const auto count = static_cast<Index>(nodes.size());
     for (const Point& node : block_of_points(5, 4, 4)) {
       const Point moved = node + Point(4, 3, shared == 4 ? 0 : 3);
-      if (std::find(nodes.begin(), nodes.begin() + count, moved) == nodes.begin() + count)
-        nodes.push_back(moved);
+      if (std::find(nodes.begin(), nodes.begin() + count, moved) == nodes.begin() + count) nodes.push_back(moved);
     }
     return nodes;
   };

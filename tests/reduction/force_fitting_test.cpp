@@ -1,8 +1,8 @@
 #include <reduction/force_fitting.hpp>
 #include <reduction/modal_basis.hpp>
-#include <tests/support/bars.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/bars.hpp>
 #include <tests/support/spring_network.hpp>
 
 #include <gmock/gmock.h>
@@ -59,8 +59,7 @@ void expect_same_columns(const auto& block, MatrixIn A_C, std::uint64_t seed, do
   const Matrix G = block.gram(block);
   EXPECT_TRUE(is_near(G, A_C.transpose() * A_C, rounding * norm * norm));
   EXPECT_TRUE(is_same(G, G.transpose()));
-  EXPECT_TRUE(
-      is_near(block.squared_norms(), A_C.colwise().squaredNorm().transpose(), rounding * norm * norm));
+  EXPECT_TRUE(is_near(block.squared_norms(), A_C.colwise().squaredNorm().transpose(), rounding * norm * norm));
 }
 
 /// All that a fitting problem offers against the explicit A and b.
@@ -115,8 +114,8 @@ void expect_consistent(const E& e) {
   expect_same_columns(some.columns(js), A_some(Eigen::all, js), 6, rounding);
   EXPECT_TRUE(is_near(some.rhs(), A_some.rowwise().sum(), rounding));
   const Vector r_some = random_vector(some.rows(), 1, 7);
-  EXPECT_TRUE(is_near(some.transpose_times(r_some), A_some.transpose() * r_some,
-                      rounding * A_some.norm() * r_some.norm()));
+  EXPECT_TRUE(
+      is_near(some.transpose_times(r_some), A_some.transpose() * r_some, rounding * A_some.norm() * r_some.norm()));
 
   EXPECT_THROW((void)block.times(Vector::Zero(2)), std::invalid_argument);
   EXPECT_THROW((void)block.transpose_times(Vector::Zero(2)), std::invalid_argument);
@@ -139,8 +138,8 @@ TEST(ForceFitting, AgreesWithTheExplicitMatrixForTetsInAnExtendedBasis) {
   const ReducedModes modes = reduced_modes(project_stiffness(basis, system));
   for (const ForceNorm norm : {ForceNorm::Mass, ForceNorm::Stiffness})
     for (const Index T : {11, 16})  // with and without free lanes
-      expect_consistent(Explicit(TetElasticity<StVenantKirchhoff>(system.model()), NodalBasis(basis), force_metric(norm, modes),
-                                 poses(basis.dim(), T)));
+      expect_consistent(Explicit(TetElasticity<StVenantKirchhoff>(system.model()), NodalBasis(basis),
+                                 force_metric(norm, modes), poses(basis.dim(), T)));
 }
 
 TEST(ForceFitting, AgreesWithTheExplicitMatrixForTetsInADenseBasis) {
@@ -158,8 +157,8 @@ TEST(ForceFitting, AgreesWithTheExplicitMatrixForSpringsWithoutPacks) {
 }
 
 TEST(ForceFitting, AgreesWithTheExplicitMatrixForTermsThatFeelTranslations) {
-  expect_consistent(Explicit(DuffingOscillators(70, 40, 900), random_basis<3>(70, 4),
-                             random_matrix(12, 12, 1, 2), random_matrix(12, 9, 0.3, 3)));
+  expect_consistent(Explicit(DuffingOscillators(70, 40, 900), random_basis<3>(70, 4), random_matrix(12, 12, 1, 2),
+                             random_matrix(12, 9, 0.3, 3)));
 }
 
 TEST(ForceFitting, DoesNotDependOnTheNumberOfThreads) {

@@ -7,9 +7,9 @@
 #include <sparse/nn_htp.hpp>
 #include <sparse/nn_omp.hpp>
 #include <sparse/nn_sp.hpp>
-#include <tests/support/heat.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/heat.hpp>
 
 #include <gtest/gtest.h>
 
@@ -136,8 +136,7 @@ class Whirl {
 
  private:
   static constexpr double k = 40, c = 900;
-  const Matrix3<double> axis =
-      (Matrix3<double>() << 0, -0.5, 2, 0.5, 0, -1, -2, 1, 0).finished();  // a × for (1, 2, ½)
+  const Matrix3<double> axis = (Matrix3<double>() << 0, -0.5, 2, 0.5, 0, -1, -2, 1, 0).finished();  // a × for (1, 2, ½)
   std::vector<Index> nodes_;
 };
 static_assert(ForceModel<Whirl> && !PotentialModel<Whirl>);
@@ -196,8 +195,7 @@ TEST(HeatSystems, WithoutReductionTheReducedTrajectoryIsTheFullOne) {
   const auto flows = [&](double t) { return burners(bar, t, 0); };
   for (const FirstOrderMethod method : {FirstOrderMethod::BackwardEuler, FirstOrderMethod::Bdf2}) {
     const FirstOrderOptions options{.method = method, .tolerance = 1e-10};
-    const Matrix full =
-        heat_up(*bar.system, h, 15, options, flows, [&](VectorIn u) { return bar.system->expand(u); });
+    const Matrix full = heat_up(*bar.system, h, 15, options, flows, [&](VectorIn u) { return bar.system->expand(u); });
     EXPECT_GT(full.maxCoeff(), 50) << "the conductivity is to vary";
     EXPECT_TRUE(is_near(heat_up(reduced, h, 15, options, flows, [&](VectorIn q) { return basis->reconstruct(q); }),
                         full, 1e-7 * full.maxCoeff()));
@@ -234,8 +232,7 @@ void expect_a_good_reduction(const TrainedBar& trained, const Selector& select) 
   ASSERT_GT(selection.weights.minCoeff(), 0);
   EXPECT_NEAR(selection.report.training_error, fitting.error(selection.indices, selection.weights), 1e-8);
   EXPECT_LT(selection.report.training_error, 0.01);
-  EXPECT_LT(trained.fitting(trained.held_out, ForceNorm::Stiffness).error(selection.indices, selection.weights),
-            0.03);
+  EXPECT_LT(trained.fitting(trained.held_out, ForceNorm::Stiffness).error(selection.indices, selection.weights), 0.03);
 
   const Reduced reduced = reduced_system(trained.bar, trained.basis, selection.indices, selection.weights);
   const Matrix theta = heat_up(

@@ -20,10 +20,9 @@ struct DerivativesCase {
   }
 };
 using DerivativesCases =
-    testing::Types<DerivativesCase<clamped_bar, 5>, DerivativesCase<clamped_bar, 5, 12>,
-                   DerivativesCase<free_bar, 4>, DerivativesCase<free_bar, 4, 25, true>,
-                   DerivativesCase<clamped_and_free_bars, 4>, DerivativesCase<free_bars, 4>,
-                   DerivativesCase<held_plate, 4>, DerivativesCase<free_plate, 4>>;
+    testing::Types<DerivativesCase<clamped_bar, 5>, DerivativesCase<clamped_bar, 5, 12>, DerivativesCase<free_bar, 4>,
+                   DerivativesCase<free_bar, 4, 25, true>, DerivativesCase<clamped_and_free_bars, 4>,
+                   DerivativesCase<free_bars, 4>, DerivativesCase<held_plate, 4>, DerivativesCase<free_plate, 4>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Derivatives, SubspaceBuilderConformance, DerivativesCases);
 
 namespace {
@@ -86,8 +85,7 @@ TEST(ForceCurvature, IsTheQuadraticPartOfStVenantKirchhoff) {
     }
   // whatever the length of x
   for (const double length : {1e-9, 1.0, 1e6}) {
-    const Vector x = length * random_vector(system.dim(), 0.02, 4),
-                 reference = quadratic_force(mesh, material, x);
+    const Vector x = length * random_vector(system.dim(), 0.02, 4), reference = quadratic_force(mesh, material, x);
     EXPECT_LT((H(x) - reference).norm(), 1e-9 * reference.norm());
   }
 }
@@ -120,10 +118,9 @@ TEST(ForceCurvature, HasTheStatedAccuracyForMooneyRivlin) {
   const TetMesh mesh = bar_mesh();
   const auto material = MooneyRivlin<double>::from({.young = 1e5, .poisson = 0.35});
   using System = FullSystem<TetElasticity<MooneyRivlin>>;
-  check_against_tangents(System(TetElasticity<MooneyRivlin>(mesh, material), lumped_mass(mesh, 1000.0), {}),
+  check_against_tangents(System(TetElasticity<MooneyRivlin>(mesh, material), lumped_mass(mesh, 1000.0), {}), 1e-8);
+  check_against_tangents(System(TetElasticity<MooneyRivlin>(mesh, material), lumped_mass(mesh, 1000.0), bar_end(mesh)),
                          1e-8);
-  check_against_tangents(
-      System(TetElasticity<MooneyRivlin>(mesh, material), lumped_mass(mesh, 1000.0), bar_end(mesh)), 1e-8);
 }
 
 TEST(ForceCurvature, HasTheStatedAccuracyForDiscreteShells) {
@@ -137,9 +134,8 @@ TEST(ForceCurvature, ShortensItsStepWhereForcesEnd) {
   TetMesh mesh = single_tet(1);
   mesh.nodes.row(3) << 0.3, 0.3, 2e-3;
   using System = FullSystem<TetElasticity<MooneyRivlin>>;
-  const System system(
-      TetElasticity<MooneyRivlin>(mesh, MooneyRivlin<double>::from({.young = 1e5, .poisson = 0.35})),
-      lumped_mass(mesh, 1000.0), {});
+  const System system(TetElasticity<MooneyRivlin>(mesh, MooneyRivlin<double>::from({.young = 1e5, .poisson = 0.35})),
+                      lumped_mass(mesh, 1000.0), {});
   const RestState rest = rest_state(system);
   const ForceCurvature H(rest);
   Vector x = Vector::Zero(12);
@@ -234,8 +230,8 @@ TEST(ModalDerivatives, OfFreeObjectsAreOrthogonalToRigidMotions) {
       EXPECT_LT((M_rigid.transpose() * theta.col(p)).norm(),
                 1e-12 * std::sqrt(theta.col(p).dot(rest.mass.cwiseProduct(theta.col(p)))));
       const auto [i, j] = derivatives.pairs[p];
-      Vector load = -H(phi.col(i) / H.size(phi.col(i)), phi.col(j) / H.size(phi.col(j))) *
-                    H.size(phi.col(i)) * H.size(phi.col(j));
+      Vector load = -H(phi.col(i) / H.size(phi.col(i)), phi.col(j) / H.size(phi.col(j))) * H.size(phi.col(i)) *
+                    H.size(phi.col(j));
       load -= M_rigid * (phi.leftCols(modes.num_rigid).transpose() * load);
       EXPECT_LT((rest.K * theta.col(p) - load).norm(), 1e-7 * load.norm());
     }
@@ -276,9 +272,9 @@ TEST(ModalDerivatives, WithAffineFieldsContainAllAffineMotions) {
   const StvkBar system = free_bar();
   const DenseBasis basis = ModalDerivatives{.num_modes = 3, .affine_fields = true}(system);
   for (std::uint64_t seed : {1, 2, 3})
-    EXPECT_LT(outside(basis, system,
-                      affine_displacement(system.model().rest_positions(), random_matrix(3, 3, 1, seed))),
-              1e-12);
+    EXPECT_LT(
+        outside(basis, system, affine_displacement(system.model().rest_positions(), random_matrix(3, 3, 1, seed))),
+        1e-12);
 }
 
 TEST(ModalDerivatives, RepresentALargeBendBetterThanAsManyModes) {

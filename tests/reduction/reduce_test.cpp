@@ -3,9 +3,9 @@
 #include <core/parallel.hpp>
 #include <core/tensor_file.hpp>
 #include <reduction/reduce.hpp>
-#include <tests/support/bars.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/bars.hpp>
 
 #include <gmock/gmock.h>
 
@@ -19,8 +19,7 @@ Solid bar_solid(const std::string& law = "stvk", bool held = true) {
   solid.mesh = bar_mesh();
   solid.law = law;
   const std::vector<double> parameters = material_law(law).values({.young = 1e5, .poisson = 0.35});
-  solid.parameters =
-      Eigen::Map<const Eigen::RowVectorXd>(parameters.data(), static_cast<Index>(parameters.size()));
+  solid.parameters = Eigen::Map<const Eigen::RowVectorXd>(parameters.data(), static_cast<Index>(parameters.size()));
   if (held) solid.fixed_nodes = bar_end(solid.mesh);
   return solid;
 }
@@ -81,8 +80,7 @@ void expect_sound(const ReducedModel& model, const ReduceReport& report, const R
 }
 
 struct Reduced {
-  explicit Reduced(const Solid& solid, const ReduceOptions& options)
-      : model(reduce(solid, options, &report)) {
+  explicit Reduced(const Solid& solid, const ReduceOptions& options) : model(reduce(solid, options, &report)) {
     expect_sound(model, report, options);
   }
   ReduceReport report;
@@ -314,8 +312,8 @@ TEST_F(ModelFile, GivesBackTheSameBits) {
     EXPECT_EQ(loaded.provenance, model.provenance);
 
     const auto force = [](const ReducedModel& of) {
-      return with_reduced_system(
-          of, [](const auto& system) { return system.force(random_vector(system.dim(), 0.1, 1)); });
+      return with_reduced_system(of,
+                                 [](const auto& system) { return system.force(random_vector(system.dim(), 0.1, 1)); });
     };
     EXPECT_TRUE(is_same(force(loaded), force(model)));
     const std::string bytes = read_file(path);
@@ -358,12 +356,17 @@ TEST_F(ModelFile, IsRefusedIfAnythingIsWrongWithIt) {
   EXPECT_THAT(changed([](auto& m) { m.indices[1] = m.indices[0]; }), testing::HasSubstr("not ascending"));
   EXPECT_THAT(changed([](auto& m) { m.weights[0] = -1; }), testing::HasSubstr("not all positive"));
   EXPECT_THAT(changed([](auto& m) { m.weights[0] = std::nan(""); }), testing::HasSubstr("not finite"));
-  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).mesh.tets[3][1] = -2; }), testing::HasSubstr("names node -2"));
-  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).fixed_nodes = {63}; }), testing::HasSubstr("names node 63"));
+  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).mesh.tets[3][1] = -2; }),
+              testing::HasSubstr("names node -2"));
+  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).fixed_nodes = {63}; }),
+              testing::HasSubstr("names node 63"));
   EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).law = "jelly"; }), testing::HasSubstr("jelly"));
-  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).density = Vector::Ones(5); }), testing::HasSubstr("bar.supple"));
+  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).density = Vector::Ones(5); }),
+              testing::HasSubstr("bar.supple"));
   EXPECT_THAT(changed([](auto& m) { m.rest_stiffness.setZero(8, 9); }), testing::HasSubstr("rest_stiffness"));
-  EXPECT_THAT(changed([](auto& m) { std::swap(std::get<Solid>(m.body).mesh.tets[0][0], std::get<Solid>(m.body).mesh.tets[0][1]); }),
+  EXPECT_THAT(changed([](auto& m) {
+                std::swap(std::get<Solid>(m.body).mesh.tets[0][0], std::get<Solid>(m.body).mesh.tets[0][1]);
+              }),
               testing::HasSubstr("tet 0 has det J"));
 }
 

@@ -14,12 +14,9 @@ namespace supple::test {
 template <typename AnyModel, typename Basis>
 ReducedSystem<AnyModel, Basis> reduced_system(const FullSystem<AnyModel>& system, const Basis& basis,
                                               const std::vector<Index>& indices, VectorIn weights) {
-  return {system.shared_model(),
-          std::make_shared<const Basis>(basis),
-          indices,
-          weights,
-          project_stiffness(basis, system),
-          system.nodal_mass()};
+  return {
+      system.shared_model(), std::make_shared<const Basis>(basis), indices, weights, project_stiffness(basis, system),
+      system.nodal_mass()};
 }
 /// All components at weight one.
 template <typename AnyModel, typename Basis>
@@ -37,9 +34,7 @@ struct ReducedBar {
     const StvkBar system = clamped_bar();
     return unselected(system, AnyBuilder{.num_modes = 3}(system));
   }
-  static Vector deformed(const System& system, std::uint64_t seed) {
-    return random_vector(system.dim(), 0.1, seed);
-  }
+  static Vector deformed(const System& system, std::uint64_t seed) { return random_vector(system.dim(), 0.1, seed); }
   static Vector displacements(const System& system, VectorIn q) { return system.subspace().reconstruct(q); }
   static Vector nodal_mass(const System&) { return clamped_bar().nodal_mass(); }
 };
@@ -88,8 +83,8 @@ TEST(ReducedSystem, WithAllComponentsIsTheProjectedFullSystem) {
     expect_projection(system, as_dense(basis), 0.1);
   }
   // terms that feel translations and come without packs
-  const FullSystem<DuffingOscillators> oscillators(DuffingOscillators(21, 40, 900),
-                                                   Vector::LinSpaced(21, 0.5, 2.5), {4, 9});
+  const FullSystem<DuffingOscillators> oscillators(DuffingOscillators(21, 40, 900), Vector::LinSpaced(21, 0.5, 2.5),
+                                                   {4, 9});
   NodalBasis basis{random_matrix(21, 4, 1, 3), {}};
   for (const Index v : {4, 9}) basis.W.row(v).setZero();
   expect_projection(oscillators, basis, 0.2);
@@ -168,8 +163,7 @@ struct Rotation : testing::Test {
   Vector rotation() const { return coordinates(affine_displacement(system.model().rest_positions(), R)); }
 
   ReducedSystem<TetElasticity<StVenantKirchhoff>, NodalBasis> some_selection() const {
-    return reduced_system(system, basis, {3, 17, 40, 41, 77, 90, 111, 120, 142},
-                          random_vector(9, 3, 4).cwiseAbs());
+    return reduced_system(system, basis, {3, 17, 40, 41, 77, 90, 111, 120, 142}, random_vector(9, 3, 4).cwiseAbs());
   }
 };
 
@@ -245,19 +239,17 @@ TEST(Collapse, WithoutReductionTheReducedTrajectoryIsTheFullOne) {
   const NodalBasis basis = whole_space(system);
   const auto nodal = unselected(system, basis);
   const auto dense = unselected(system, as_dense(basis));
-  const Matrix full =
-      Swing::run(system, NonlinearSolver::Newton, [&](VectorIn u) { return system.expand(u); });
+  const Matrix full = Swing::run(system, NonlinearSolver::Newton, [&](VectorIn u) { return system.expand(u); });
   const double size = full.lpNorm<Eigen::Infinity>();
   ASSERT_GT(size, 0.1) << "the motion is to be nonlinear";
   ASSERT_GT((full.col(19) - full.col(9)).lpNorm<Eigen::Infinity>(), 0.01) << "and to move";
   for (const NonlinearSolver solver : {NonlinearSolver::Newton, NonlinearSolver::Bfgs, NonlinearSolver::Broyden}) {
     SCOPED_TRACE(static_cast<int>(solver));
-    EXPECT_TRUE(is_near(Swing::run(nodal, solver, [&](VectorIn q) { return basis.reconstruct(q); }), full,
-                        1e-6 * size));
+    EXPECT_TRUE(
+        is_near(Swing::run(nodal, solver, [&](VectorIn q) { return basis.reconstruct(q); }), full, 1e-6 * size));
   }
-  EXPECT_TRUE(
-      is_near(Swing::run(dense, NonlinearSolver::Newton, [&](VectorIn q) { return basis.reconstruct(q); }),
-              full, 1e-6 * size));
+  EXPECT_TRUE(is_near(Swing::run(dense, NonlinearSolver::Newton, [&](VectorIn q) { return basis.reconstruct(q); }),
+                      full, 1e-6 * size));
 }
 
 }  // namespace

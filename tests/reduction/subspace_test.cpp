@@ -55,8 +55,7 @@ TEST(ExtendedModalBasis, OfAFreeObjectContainsAllAffineMotions) {
   const NodalBasis basis = ExtendedModalBasis{.num_modes = 8}(system);
   const Points& x = system.model().rest_positions();
   for (int k = 0; k < 3; ++k) {
-    EXPECT_LT(outside(basis, system, affine_displacement(x, Matrix3<double>::Identity(), Point::Unit(k))),
-              1e-12);
+    EXPECT_LT(outside(basis, system, affine_displacement(x, Matrix3<double>::Identity(), Point::Unit(k))), 1e-12);
     for (int l = 0; l < 3; ++l) {
       Matrix3<double> F = Matrix3<double>::Identity();
       F(k, l) += 1;
@@ -86,8 +85,7 @@ TEST(ExtendedModalBasis, FindsTheRotationsOfAFreeObjectExactly) {
   const NodalBasis basis = ExtendedModalBasis{.num_modes = 12}(system);
   const Matrix3<double> R =
       Eigen::AngleAxisd(70 * std::numbers::pi / 180, Point(1, -2, 0.5).normalized()).toRotationMatrix();
-  EXPECT_LT(outside(basis, system, affine_displacement(system.model().rest_positions(), R, {0.1, 0, -2})),
-            1e-12);
+  EXPECT_LT(outside(basis, system, affine_displacement(system.model().rest_positions(), R, {0.1, 0, -2})), 1e-12);
   // the linear modes alone do not: they only know infinitesimal rotations
   const DenseBasis modal = ModalBasis{.num_modes = 12}(system);
   EXPECT_GT(outside(modal, system, affine_displacement(system.model().rest_positions(), R)), 1e-2);
@@ -102,8 +100,7 @@ TEST(ModalBasis, SaysWhichNumbersOfModesAreImpossible) {
     }
     return "no exception";
   };
-  EXPECT_THAT(message([] { ModalBasis{.num_modes = 0}(clamped_bar()); }),
-              testing::HasSubstr("number of modes is 0"));
+  EXPECT_THAT(message([] { ModalBasis{.num_modes = 0}(clamped_bar()); }), testing::HasSubstr("number of modes is 0"));
   EXPECT_THAT(message([] { ModalBasis{.num_modes = 6}(free_bar()); }), testing::HasSubstr("6 rigid motions"));
   EXPECT_THAT(message([] { ModalBasis{.num_modes = 100000}(clamped_bar()); }),
               testing::HasSubstr("number of modes is 100000"));
@@ -217,9 +214,7 @@ struct Poses : testing::Test {
   TrainingPoses sample(const PoseOptions& options) const {
     return sample_poses(system.shared_model(), basis, modes, total_mass, diagonal, options);
   }
-  std::vector<Index> inverted(const Matrix& Q) const {
-    return count_inverted(system.shared_model(), basis, Q);
-  }
+  std::vector<Index> inverted(const Matrix& Q) const { return count_inverted(system.shared_model(), basis, Q); }
 
   const StvkBar system = free_bar();
   const NodalBasis basis = ExtendedModalBasis{.num_modes = 9}(system);

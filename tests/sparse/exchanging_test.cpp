@@ -39,8 +39,7 @@ TEST(Exchange, EndsWhereNoPairThatKeepsAllWeightsPositiveLowersTheError) {
   for (std::uint64_t seed : {1, 2, 3, 4, 5}) {
     const NormalEquations problem(40, 20, seed);
     const Vector w = problem.fit(random_subset(20, 6, seed));
-    const std::vector<Index> start = positive(w),
-                             end = exchange(problem.G, problem.c, w, std::vector<char>(20, 0));
+    const std::vector<Index> start = positive(w), end = exchange(problem.G, problem.c, w, std::vector<char>(20, 0));
     EXPECT_EQ(end.size(), start.size());
     EXPECT_LE(problem.error(end), problem.error(start) * (1 + 1e-12));
     EXPECT_THAT(problem.fit(end)(end), ::testing::Each(::testing::Gt(0)));

@@ -65,8 +65,7 @@ TYPED_TEST(Block, GrowsAndShrinksLikeItsIndexSet) {
 
 TYPED_TEST(Block, MultipliesWithAnother) {
   const Matrix expected = A(Eigen::all, some).transpose() * A(Eigen::all, more);
-  EXPECT_TRUE(
-      columns_of(this->problem(), some).gram(columns_of(this->problem(), more)).isApprox(expected, 1e-13));
+  EXPECT_TRUE(columns_of(this->problem(), some).gram(columns_of(this->problem(), more)).isApprox(expected, 1e-13));
 }
 
 TYPED_TEST(Block, GivesTheSameBitsWhateverTheNumberOfThreads) {

@@ -64,8 +64,7 @@ TEST(NnHtp, ReturnsTheBestIterateOfItsHistory) {
   const DenseProblem problem = noisy();
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const Selection c = NnHtp{.seed = seed}(problem, 10);
-    for (const SelectionStep& step : c.report.history)
-      EXPECT_GE(step.training_error, c.report.training_error - 1e-13);
+    for (const SelectionStep& step : c.report.history) EXPECT_GE(step.training_error, c.report.training_error - 1e-13);
     EXPECT_EQ(c.report.iterations + 1 >= static_cast<Index>(c.report.history.size()), true);
   }
 }
@@ -113,8 +112,7 @@ TEST(NnHtp, ChoosesAmongTheCandidatesAndKeepsWhatItMust) {
   request.must_keep = {31, 10};
   const Selection c = NnHtp{}(problem, request);
   EXPECT_THAT(c.indices, ::testing::IsSupersetOf({10, 31}));
-  EXPECT_THAT(c.indices,
-              ::testing::Each(::testing::AnyOf(31, ::testing::Truly([](Index j) { return j % 2 == 0; }))));
+  EXPECT_THAT(c.indices, ::testing::Each(::testing::AnyOf(31, ::testing::Truly([](Index j) { return j % 2 == 0; }))));
 }
 
 TEST(NnHtp, NeverLosesAgainstItsWarmStart) {

@@ -23,14 +23,12 @@ struct Case {
 };
 
 Matrix orthonormal(Index rows, Index cols, std::uint64_t seed) {
-  return Eigen::HouseholderQR<Matrix>(gaussian(rows, cols, seed)).householderQ() *
-         Matrix::Identity(rows, cols);
+  return Eigen::HouseholderQR<Matrix>(gaussian(rows, cols, seed)).householderQ() * Matrix::Identity(rows, cols);
 }
 
 Matrix conditioned(Index rows, Index cols, double condition, std::uint64_t seed) {
-  const Vector sigma = Vector::NullaryExpr(cols, [&](Index i) {
-    return std::pow(condition, -static_cast<double>(i) / static_cast<double>(cols - 1));
-  });
+  const Vector sigma = Vector::NullaryExpr(
+      cols, [&](Index i) { return std::pow(condition, -static_cast<double>(i) / static_cast<double>(cols - 1)); });
   return orthonormal(rows, cols, seed) * sigma.asDiagonal() * orthonormal(cols, cols, seed + 1).transpose();
 }
 
@@ -43,12 +41,10 @@ std::vector<Case> cases() {
     const std::string s = " " + std::to_string(seed);
     add("gaussian" + s, gaussian(20, 10, seed), gaussian(20, 1, 50 + seed));
     add("positive" + s, uniform(20, 10, seed), gaussian(20, 1, 50 + seed) + Vector::Ones(20));
-    add("nearly parallel" + s, Matrix::Ones(20, 10) + 1e-6 * gaussian(20, 10, seed),
-        uniform(20, 1, 60 + seed));
+    add("nearly parallel" + s, Matrix::Ones(20, 10) + 1e-6 * gaussian(20, 10, seed), uniform(20, 1, 60 + seed));
     add("wide" + s, gaussian(6, 12, seed), gaussian(6, 1, 70 + seed));
     const auto few_bits = [](double x) { return std::round(16 * x) / 16; };  // so that the product is exact
-    add("rank 4 of 10" + s,
-        gaussian(20, 4, seed).unaryExpr(few_bits) * gaussian(4, 10, 80 + seed).unaryExpr(few_bits),
+    add("rank 4 of 10" + s, gaussian(20, 4, seed).unaryExpr(few_bits) * gaussian(4, 10, 80 + seed).unaryExpr(few_bits),
         gaussian(20, 1, 90 + seed));
     Matrix A(20, 12);
     A << gaussian(20, 4, seed), gaussian(20, 4, seed), gaussian(20, 4, seed);
@@ -111,11 +107,10 @@ TEST_P(NnlsMethods, AgreeWithBruteForceInExtendedPrecision) {
 TEST_P(NnlsMethods, AgreeWithLawsonHansonInExtendedPrecision) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const Index rows = 60, cols = 25 + 5 * static_cast<Index>(seed);
-    for (const Case& c :
-         {Case{"positive", uniform(rows, cols, seed), gaussian(rows, 1, 9) + Vector::Ones(rows)},
-          Case{"gaussian", gaussian(rows, cols, seed), gaussian(rows, 1, 10)},
-          Case{"forces", test::force_fitting_on_a_cube(4, 5, cols, seed).matrix(),
-               test::force_fitting_on_a_cube(4, 5, cols, seed).rhs()}}) {
+    for (const Case& c : {Case{"positive", uniform(rows, cols, seed), gaussian(rows, 1, 9) + Vector::Ones(rows)},
+                          Case{"gaussian", gaussian(rows, cols, seed), gaussian(rows, 1, 10)},
+                          Case{"forces", test::force_fitting_on_a_cube(4, 5, cols, seed).matrix(),
+                               test::force_fitting_on_a_cube(4, 5, cols, seed).rhs()}}) {
       const NnlsFit fit = Nnls{.method = GetParam()}(c.A, c.b);
       const Vector w = test::lawson_hanson(c.A, c.b).cast<double>();
       EXPECT_LE(test::kkt_residual(c.A, c.b, w), 1e-14) << "the reference itself, " << c.name;
@@ -139,8 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Every, NnlsMethods,
 TEST(Nnls, LetsQrTakeOverWhereTheNormalEquationsLoseTheDigits) {
   const Matrix A = conditioned(300, 80, 3e8, 1);
   const Vector b = A * uniform(80, 1, 2);
-  const double by_normal_equations =
-      Nnls{.method = NnlsMethod::NormalEquations}(A, b).residual_norm / b.norm();
+  const double by_normal_equations = Nnls{.method = NnlsMethod::NormalEquations}(A, b).residual_norm / b.norm();
   const NnlsFit fit = Nnls{}(A, b);
   EXPECT_EQ(fit.method, NnlsMethod::Qr);
   EXPECT_LE(fit.residual_norm, 1e-13 * b.norm());

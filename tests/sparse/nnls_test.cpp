@@ -142,8 +142,7 @@ TEST(Fnnls, SaysSoWhereNumbersAreNotFinite) {
 TEST(Fnnls, RefusesWhatDoesNotFit) {
   EXPECT_THROW(Fnnls{}(Matrix::Identity(3, 2), Vector::Ones(2)), std::invalid_argument);
   EXPECT_THROW(Fnnls{}(Matrix::Identity(3, 3), Vector::Ones(2)), std::invalid_argument);
-  EXPECT_THROW(Fnnls{}(Matrix::Identity(3, 3), Vector::Ones(3), std::vector<Index>{3}),
-               std::invalid_argument);
+  EXPECT_THROW(Fnnls{}(Matrix::Identity(3, 3), Vector::Ones(3), std::vector<Index>{3}), std::invalid_argument);
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ struct OvershootingOmp : NnOmp {
   OvershootingOmp() : NnOmp{.overshoot = 1.3, .batch = 2} {}
 };
 
-using Selectors = ::testing::Types<NnSp, NnHtp, NnHtpFull, Htp, Niht, NnNiht, GreedyCubature,
-                                   SubsetTrainedGreedy, BatchedGreedy, NnOmp, OvershootingOmp, Ecsw, Ecm,
-                                   Sketched<NnSp>, UniformRandom, AllColumns>;
+using Selectors =
+    ::testing::Types<NnSp, NnHtp, NnHtpFull, Htp, Niht, NnNiht, GreedyCubature, SubsetTrainedGreedy, BatchedGreedy,
+                     NnOmp, OvershootingOmp, Ecsw, Ecm, Sketched<NnSp>, UniformRandom, AllColumns>;
 
 struct Names {
   template <typename S>
@@ -52,8 +52,7 @@ const DenseProblem& cube() {
 
 TEST(NnSp, HasHalfTheErrorOfNnHtp) {
   for (Index s : {40, 80})
-    EXPECT_LT(NnSp{}(cube(), s).report.training_error, 0.6 * NnHtp{}(cube(), s).report.training_error)
-        << "s = " << s;
+    EXPECT_LT(NnSp{}(cube(), s).report.training_error, 0.6 * NnHtp{}(cube(), s).report.training_error) << "s = " << s;
 }
 
 TEST(NnSp, NeverGetsWorse) {
@@ -175,8 +174,7 @@ TEST(SelectByName, KnowsEveryName) {
 TEST(SelectByName, DoesTheSameOnATypeErasedProblem) {
   for (std::string_view name : selector_names) {
     if (name == "all") continue;
-    const Selection expected = select_by_name(name, cube(), 10, 1),
-                    c = select_by_name(name, AnyProblem(cube()), 10, 1);
+    const Selection expected = select_by_name(name, cube(), 10, 1), c = select_by_name(name, AnyProblem(cube()), 10, 1);
     EXPECT_EQ(c.indices, expected.indices) << name;
     EXPECT_EQ(c.weights, expected.weights) << name;
   }

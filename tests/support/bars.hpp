@@ -20,8 +20,7 @@ inline std::vector<Index> bar_end(const TetMesh& mesh) {
 using StvkBar = FullSystem<TetElasticity<StVenantKirchhoff>>;
 inline StvkBar stvk_bar(const std::vector<Index>& fixed_nodes) {
   const TetMesh mesh = bar_mesh();
-  return {TetElasticity<StVenantKirchhoff>(mesh,
-                                           StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
+  return {TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
           lumped_mass(mesh, 1000.0), fixed_nodes};
 }
 inline StvkBar clamped_bar() {
@@ -43,8 +42,7 @@ inline StvkBar two_bars(bool first_is_clamped) {
     for (Index& v : tet) v += n;
     mesh.tets.push_back(tet);
   }
-  return {TetElasticity<StVenantKirchhoff>(mesh,
-                                           StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
+  return {TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
           lumped_mass(mesh, 1000.0), fixed};
 }
 inline StvkBar clamped_and_free_bars() {

@@ -2,15 +2,15 @@
 /// \file The models that the conformance suites run over: factories of models and of full systems.
 
 #include <physics/any_model.hpp>
-#include <physics/discrete_shell.hpp>
 #include <physics/composite_model.hpp>
+#include <physics/discrete_shell.hpp>
 #include <physics/full_system.hpp>
 #include <physics/heat_conduction.hpp>
 #include <physics/mass.hpp>
 #include <physics/surface_heat_loss.hpp>
 #include <physics/tet_elasticity.hpp>
-#include <tests/support/meshes.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/meshes.hpp>
 #include <tests/support/spring_network.hpp>
 
 namespace supple::test {
@@ -112,9 +112,7 @@ struct HotSurface {
 /// Tets that conduct and the surface that loses.
 struct CoolingBar {
   static constexpr double length = 100;
-  static auto make() {
-    return CompositeModel(HeatBar<ExponentialConductivity>::make(), HotSurface::make());
-  }
+  static auto make() { return CompositeModel(HeatBar<ExponentialConductivity>::make(), HotSurface::make()); }
   static Vector nodal_mass() { return HotSurface::nodal_mass(); }
 };
 

@@ -56,8 +56,7 @@ inline TetMesh kuhn_box(Index nx, Index ny, Index nz, double edge = 0.1) {
 template <typename Mesh>
 Mesh perturbed(Mesh mesh, double amplitude, std::uint64_t seed) {
   Random random(seed);
-  for (Index k = 0; k < mesh.nodes.size(); ++k)
-    mesh.nodes.data()[k] += amplitude * (2 * random.uniform() - 1);
+  for (Index k = 0; k < mesh.nodes.size(); ++k) mesh.nodes.data()[k] += amplitude * (2 * random.uniform() - 1);
   return mesh;
 }
 
@@ -130,8 +129,7 @@ inline std::vector<Index> boundary_nodes(const TetMesh& mesh) {
 }
 
 /// Displacements of all nodes (3 n) under x ↦ F x + t.
-inline Vector affine_displacement(const Points& nodes, const Matrix3<double>& F,
-                                  const Point& t = Point::Zero()) {
+inline Vector affine_displacement(const Points& nodes, const Matrix3<double>& F, const Point& t = Point::Zero()) {
   const Points moved = (nodes * F.transpose()).rowwise() + t.transpose();
   const Points u = moved - nodes;
   return Eigen::Map<const Vector>(u.data(), u.size());

@@ -24,8 +24,7 @@ double outside(const Basis& basis, const System& system, const Vector& u) {
 template <typename Basis, typename System>
 double outside(const Basis& basis, const System& system, const Matrix& U) {
   double farthest = 0;
-  for (Index j = 0; j < U.cols(); ++j)
-    farthest = std::max(farthest, outside(basis, system, Vector(U.col(j))));
+  for (Index j = 0; j < U.cols(); ++j) farthest = std::max(farthest, outside(basis, system, Vector(U.col(j))));
   return farthest;
 }
 

@@ -14,8 +14,7 @@ template <typename Element>
 CellMesh<Element::num_nodes> box_of(const std::array<Index, 3>& cells, double edge) {
   const auto [nx, ny, nz] = cells;
   if constexpr (std::same_as<Element, TrilinearHex>)
-    return hex_box(nx, ny, nz,
-                   edge * Point(static_cast<double>(nx), static_cast<double>(ny), static_cast<double>(nz)));
+    return hex_box(nx, ny, nz, edge * Point(static_cast<double>(nx), static_cast<double>(ny), static_cast<double>(nz)));
   else if constexpr (std::same_as<Element, QuadraticTet>)
     return quadratic_mesh(kuhn_box(nx, ny, nz, edge));
   else
@@ -35,10 +34,8 @@ void straighten(CellMesh<n>&) {}
 
 /// The same with every node moved at random: hexes with curved faces, quadratic tets with curved edges.
 template <typename Element>
-CellMesh<Element::num_nodes> irregular_box(const std::array<Index, 3>& cells, double edge,
-                                           std::uint64_t seed = 21) {
-  return perturbed(box_of<Element>(cells, edge), (std::same_as<Element, QuadraticTet> ? 0.05 : 0.1) * edge,
-                   seed);
+CellMesh<Element::num_nodes> irregular_box(const std::array<Index, 3>& cells, double edge, std::uint64_t seed = 21) {
+  return perturbed(box_of<Element>(cells, edge), (std::same_as<Element, QuadraticTet> ? 0.05 : 0.1) * edge, seed);
 }
 
 /// A few irregular cells, a material for each: for conformance suites.
@@ -49,8 +46,7 @@ struct CellBar {
   static constexpr bool is_quadratic = std::same_as<Element, QuadraticTet>;
   static constexpr double length = 0.1;  // a quadratic tet has two nodes an edge
   static CellMesh<Element::num_nodes> mesh() {
-    return irregular_box<Element>({std::same_as<Element, TrilinearHex> ? 2 : 1, 1, 1},
-                                  (is_quadratic ? 2 : 1) * length);
+    return irregular_box<Element>({std::same_as<Element, TrilinearHex> ? 2 : 1, 1, 1}, (is_quadratic ? 2 : 1) * length);
   }
   static Model make() {
     std::vector<Material<double>> materials;

@@ -32,12 +32,13 @@ TEST(Agree, NamesTheEntryThatIsFarthestOff) {
   found(0, 1) = 0.5;
   found(1, 2) = -2;
   EXPECT_THAT(violation(agree("claim", name, found, expected, 0.1, " by hand")),
-                  StrEq("claim: A12: expected 0 by hand, found -2 (tolerance 0.1)"));
+              StrEq("claim: A12: expected 0 by hand, found -2 (tolerance 0.1)"));
   EXPECT_TRUE(agree("claim", name, found, expected, 2));
   found(0, 0) = std::nan("");
   EXPECT_THAT(violation(agree("claim", name, found, expected, 2)), HasSubstr("A00: expected 0, found nan"));
   EXPECT_THAT(violation(agree("claim", name, expected, expected, std::nan(""))), HasSubstr("scale"));
-  EXPECT_THAT(violation(agree("claim", name, expected, Matrix::Zero(3, 3), 1)), HasSubstr("expected 3 x 3 numbers, found 2 x 3"));
+  EXPECT_THAT(violation(agree("claim", name, expected, Matrix::Zero(3, 3), 1)),
+              HasSubstr("expected 3 x 3 numbers, found 2 x 3"));
 }
 
 /// St. Venant–Kirchhoff, wrong in ways to choose.
@@ -78,27 +79,27 @@ Gradient some_state() {
 TEST(MaterialMessages, NameTheDerivativeAndTheEntry) {
   const Gradient F = some_state(), R = random_rotation(4);
   EXPECT_THAT(violation(Faulty<Fault::Stress>::promises().stress_is_the_gradient_of_the_energy(F)),
-                  AllOf(StartsWith("material: stress is not the gradient of the energy: ∂ψ/∂F(1,2) = stress(F)(1,2): "
-                                   "expected "),
-                        HasSubstr(" by differences of the energy at F = ["), HasSubstr(", found ")));
+              AllOf(StartsWith("material: stress is not the gradient of the energy: ∂ψ/∂F(1,2) = stress(F)(1,2): "
+                               "expected "),
+                    HasSubstr(" by differences of the energy at F = ["), HasSubstr(", found ")));
   EXPECT_THAT(violation(Faulty<Fault::Tangent>::promises().tangent_is_the_derivative_of_the_stress(F)),
-                  StartsWith("material: tangent is not the derivative of the stress: tangent(F)(4,4) = "
-                             "∂P(1,1)/∂F(1,1): expected "));
+              StartsWith("material: tangent is not the derivative of the stress: tangent(F)(4,4) = "
+                         "∂P(1,1)/∂F(1,1): expected "));
   EXPECT_THAT(violation(Faulty<Fault::Asymmetry>::promises().tangent_is_symmetric(F)),
-                  AllOf(StartsWith("material: tangent is not symmetric: tangent(F)("), HasSubstr("7")));
+              AllOf(StartsWith("material: tangent is not symmetric: tangent(F)("), HasSubstr("7")));
   EXPECT_THAT(violation(Faulty<Fault::EnergyAtRest>::promises().rest_is_free_of_energy_and_stress(R)),
-                  StartsWith("material: there is energy at rest: energy(F): expected 0"));
+              StartsWith("material: there is energy at rest: energy(F): expected 0"));
   EXPECT_THAT(violation(Faulty<Fault::Pack>::promises().packs_equal_numbers()),
-                  StartsWith("material: lane 0 of a pack differs from the same numbers: energy(F)"));
+              StartsWith("material: lane 0 of a pack differs from the same numbers: energy(F)"));
   EXPECT_THAT(violation(Faulty<Fault::Stress>::promises().formulas_by_hand_equal_those_derived(F)),
-                  StartsWith("material: stress by hand is not that derived from the energy: ∂ψ/∂F(1,2)"));
+              StartsWith("material: stress by hand is not that derived from the energy: ∂ψ/∂F(1,2)"));
   EXPECT_THAT(violation(Faulty<Fault::Tangent>::promises().formulas_by_hand_equal_those_derived(F)),
-                  StartsWith("material: tangent by hand is not that derived from the stress: tangent(F)(4,4)"));
+              StartsWith("material: tangent by hand is not that derived from the stress: tangent(F)(4,4)"));
   EXPECT_THAT(violation(Faulty<Fault::None>::promises().is_linear_elasticity_at_rest({.young = 1e5, .poisson = 0.35})),
-                  AllOf(StartsWith("material: is not linear elasticity of its moduli at rest: tangent(F)("),
-                        HasSubstr("for Young's modulus 100000 and Poisson's ratio 0.35")));
+              AllOf(StartsWith("material: is not linear elasticity of its moduli at rest: tangent(F)("),
+                    HasSubstr("for Young's modulus 100000 and Poisson's ratio 0.35")));
   EXPECT_THAT(violation(refuses_impossible_moduli([](const IsotropicModuli& m) { return m.shear(); })),
-                  HasSubstr("from(young = 0, poisson = 0.3): expected std::invalid_argument, found a material"));
+              HasSubstr("from(young = 0, poisson = 0.3): expected std::invalid_argument, found a material"));
 }
 
 TEST(MaterialMessages, AreNotThereWhereNothingIsWrong) {
@@ -128,10 +129,11 @@ struct Linear {
 TEST(MaterialMessages, TellObserversFromDirections) {
   const Gradient F = some_state(), R = random_rotation(4);
   EXPECT_THAT(violation(MaterialPromises<Linear>({1e5}).is_objective(F, R)),
-                  StartsWith("material: is not objective (changes when the object is turned): energy(R F): expected "));
+              StartsWith("material: is not objective (changes when the object is turned): energy(R F): expected "));
   const MaterialPromises<Fung> fibres(Fung<double>::from(rubber, 10, 4));
   EXPECT_TRUE(fibres.is_objective(F, R));
-  EXPECT_THAT(violation(fibres.is_isotropic(F, R)), StartsWith("material: is not isotropic (changes when the undeformed"));
+  EXPECT_THAT(violation(fibres.is_isotropic(F, R)),
+              StartsWith("material: is not isotropic (changes when the undeformed"));
 }
 
 /// Two springs in a row, wrong in ways to choose.
@@ -172,19 +174,19 @@ ForceModelPromises<FaultySprings> springs(FaultySprings::Fault fault) {
 TEST(ForceModelMessages, NameComponentStateNodeAndAxis) {
   using enum FaultySprings::Fault;
   EXPECT_THAT(violation(springs(Stencil).stencil_is_of_distinct_nodes(1)),
-                  StrEq("force model: component 1: stencil: expected distinct nodes, found 2 twice"));
+              StrEq("force model: component 1: stencil: expected distinct nodes, found 2 twice"));
   EXPECT_THAT(violation(springs(Rest).is_in_equilibrium_at_rest(1)),
-                  StartsWith("force model: component 1, state 0: there is force at rest: force[5 (node 2, z)]: expected "
-                             "0, found 3"));
+              StartsWith("force model: component 1, state 0: there is force at rest: force[5 (node 2, z)]: expected "
+                         "0, found 3"));
   EXPECT_THAT(violation(springs(Force).force_is_the_gradient_of_the_energy(1, 2)),
-                  AllOf(StartsWith("force model: component 1, state 2: force is not the gradient of the energy: force[4 "
-                                   "(node 2, y)]: expected "),
-                        HasSubstr(" by differences of the energy, found ")));
+              AllOf(StartsWith("force model: component 1, state 2: force is not the gradient of the energy: force[4 "
+                               "(node 2, y)]: expected "),
+                    HasSubstr(" by differences of the energy, found ")));
   EXPECT_THAT(violation(springs(Stiffness).stiffness_is_the_derivative_of_the_force(1, 0)),
-                  StartsWith("force model: component 1, state 0: stiffness is not the derivative of the force: "
-                             "stiffness[2 (node 1, z)][3 (node 2, x)]: expected "));
+              StartsWith("force model: component 1, state 0: stiffness is not the derivative of the force: "
+                         "stiffness[2 (node 1, z)][3 (node 2, x)]: expected "));
   EXPECT_THAT(violation(springs(Asymmetry).tangent_is_symmetric(1, 1)),
-                  HasSubstr("component 1, state 1: stiffness is not symmetric: stiffness[5 (node 2, z)][0 (node 1, x)]"));
+              HasSubstr("component 1, state 1: stiffness is not symmetric: stiffness[5 (node 2, z)][0 (node 1, x)]"));
 }
 
 TEST(ForceModelMessages, TellTheFirstOfAllStatesOrNothing) {
@@ -196,7 +198,8 @@ TEST(ForceModelMessages, TellTheFirstOfAllStatesOrNothing) {
   EXPECT_TRUE(gradient_of(springs(None)));
   EXPECT_TRUE(springs(None).pack_equals_its_terms({0, 1, 1, 0, 0, 0, 1, 1}, 2));
   EXPECT_TRUE(springs(None).translation_changes_nothing(1, 1));
-  EXPECT_THAT(violation(springs(None).translation_changes_something()), HasSubstr("`static constexpr bool translation_invariant"));
+  EXPECT_THAT(violation(springs(None).translation_changes_something()),
+              HasSubstr("`static constexpr bool translation_invariant"));
 }
 
 TEST(SelectorMessages, NameWhatIsUnsound) {
@@ -212,18 +215,22 @@ TEST(SelectorMessages, NameWhatIsUnsound) {
   };
   EXPECT_TRUE(after([](Selection&) {}));
   EXPECT_THAT(violation(after([](Selection& c) { c.indices[0] = 9; })),
-                  StrEq("selector: indices[0]: expected a column 0 to 8, found 9"));
-  EXPECT_THAT(violation(after([](Selection& c) { c.indices[0] = 0; })), HasSubstr("expected a candidate, found column 0"));
-  EXPECT_THAT(violation(after([](Selection& c) { std::swap(c.indices[0], c.indices[1]); })), HasSubstr("the one before it"));
+              StrEq("selector: indices[0]: expected a column 0 to 8, found 9"));
+  EXPECT_THAT(violation(after([](Selection& c) { c.indices[0] = 0; })),
+              HasSubstr("expected a candidate, found column 0"));
+  EXPECT_THAT(violation(after([](Selection& c) { std::swap(c.indices[0], c.indices[1]); })),
+              HasSubstr("the one before it"));
   EXPECT_THAT(violation(after([](Selection& c) { c.weights[0] = -2; })), HasSubstr("expected >= 0, found -2"));
   EXPECT_THAT(violation(after([](Selection& c) { c.weights[0] = 0; })), HasSubstr("column without weight"));
-  EXPECT_THAT(violation(after([](Selection& c) { c.weights.conservativeResize(1); })), HasSubstr("weights: expected one for each"));
-  EXPECT_THAT(violation(after([](Selection& c) { c.weights[0] *= 1.1; })), HasSubstr("report.residual: expected |A w - b| = "));
+  EXPECT_THAT(violation(after([](Selection& c) { c.weights.conservativeResize(1); })),
+              HasSubstr("weights: expected one for each"));
+  EXPECT_THAT(violation(after([](Selection& c) { c.weights[0] *= 1.1; })),
+              HasSubstr("report.residual: expected |A w - b| = "));
   EXPECT_THAT(violation(after([](Selection& c) { c.report.kkt_residual = 1e-3; })), HasSubstr("report.kkt_residual"));
   EXPECT_THAT(violation(after([](Selection& c) { c.report.stop_reason.clear(); })), HasSubstr("report.stop_reason"));
   asked.must_keep = {2};
   EXPECT_THAT(violation(is_sound(right, problem, asked, Signs::NonNegative, true)),
-                  HasSubstr("expected column 2, which it must keep, found none"));
+              HasSubstr("expected column 2, which it must keep, found none"));
 }
 
 TEST(SubspaceMessages, NameNodeAndColumn) {
@@ -237,11 +244,11 @@ TEST(SubspaceMessages, NameNodeAndColumn) {
   DenseBasis wrong = basis;
   wrong.W(4, 1) = 0.1;
   EXPECT_THAT(violation(keeps_fixed_nodes(wrong, system)),
-                  StrEq("subspace: a fixed node moves: node 1, axis 1, column 1: expected 0, found 0.1"));
+              StrEq("subspace: a fixed node moves: node 1, axis 1, column 1: expected 0, found 0.1"));
   wrong = basis;
   wrong.W(0, 1) = 1;
   EXPECT_THAT(violation(is_mass_orthonormal(wrong, system)),
-                  StartsWith("subspace: columns are not mass-orthonormal: u_1 . M u_0: expected 0, found 0.5"));
+              StartsWith("subspace: columns are not mass-orthonormal: u_1 . M u_0: expected 0, found 0.5"));
   wrong = basis;
   wrong.W(3, 0) = std::nan("");
   EXPECT_THAT(violation(has_dimensions(wrong, system)), HasSubstr("W(3, 0): expected a finite number, found nan"));

@@ -21,10 +21,10 @@ int main() {
   model.weights = 2 * model.weights;              // reallocated here
   model.rest_stiffness.conservativeResize(1, 1);  // freed here
 
-  const FullSystem<TetElasticity<StVenantKirchhoff>> system(make_model<StVenantKirchhoff>(solid),
-                                                            solid.nodal_mass(), solid.fixed_nodes);
+  const FullSystem<TetElasticity<StVenantKirchhoff>> system(make_model<StVenantKirchhoff>(solid), solid.nodal_mass(),
+                                                            solid.fixed_nodes);
   const Vector f = system.force(Vector::Constant(system.dim(), 1e-3));
-  std::printf("d = %td, %td points, error %.3f, |f| = %.3e N\n", report.dimension, report.points,
-              report.training_error, f.norm());
+  std::printf("d = %td, %td points, error %.3f, |f| = %.3e N\n", report.dimension, report.points, report.training_error,
+              f.norm());
   return report.dimension == 36 && report.training_error < 0.5 && f.allFinite() ? 0 : 1;
 }

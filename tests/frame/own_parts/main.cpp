@@ -30,9 +30,9 @@ CellMesh<6> row_of_wedges(Index nx, double edge) {
 int main() {
   using Model = SolidElasticity<Wedge, Gent>;
   const CellMesh<6> mesh = row_of_wedges(40, 0.025);
-  const auto full = std::make_shared<const FullSystem<Model>>(
-      Model(mesh, Gent<double>::from({.young = 1e6, .poisson = 0.3})), lumped_mass<Wedge>(mesh, 1000.0),
-      std::vector<Index>{0, 1, 2, 3});
+  const auto full =
+      std::make_shared<const FullSystem<Model>>(Model(mesh, Gent<double>::from({.young = 1e6, .poisson = 0.3})),
+                                                lumped_mass<Wedge>(mesh, 1000.0), std::vector<Index>{0, 1, 2, 3});
   const auto subspace = std::make_shared<const NodalBasis>(ExtendedModalBasis{.num_modes = 4}(*full));
   const auto reduced = reduce(full, subspace, BatchedOmp{.batch = 4}, {.points = 30});
   std::printf("%td of %td wedges, training error %.3f, held out %.3f\n", reduced.report.points, mesh.num_cells(),
