@@ -126,7 +126,7 @@ void CompareCommand::run() const {
   if (!has_nodes(model_a.body, nodes))
     throw InputError(first.string() + " and " + reference.string() + " are of different meshes");
   const std::vector<std::pair<Index, Index>> frames = common_frames(*this, a, b);
-  if (!output.empty()) make_folder(output);
+  const OutputFolder folder(output);
 
   const Vector mass = nodal_mass(model_b.body);
   const auto norm = [&](const Vector& field) { return std::sqrt(as_points(field).rowwise().squaredNorm().dot(mass)); };
@@ -196,9 +196,10 @@ void CompareCommand::run() const {
               {"velocities", errors(result.velocity)},
               {"energy", errors(result.energy)},
               {"farthest node",
-               shown(distance, 3) + " m apart, " + shown_percent(distance / diagonal, 2) + " of the diagonal"},
-              {"steps/s", shown(a.steps_per_second) + " against " + shown(b.steps_per_second) + ": " +
-                              shown(a.steps_per_second / b.steps_per_second, 3) + " times as fast"}};
+               shown(distance, 3) + " m apart, " + shown_percent(distance / diagonal, 2) + " of the diagonal"}};
+    if (b.steps_per_second > 0)  // not of edits
+      rows.emplace_back("steps/s", shown(a.steps_per_second) + " against " + shown(b.steps_per_second) + ": " +
+                                       shown(a.steps_per_second / b.steps_per_second, 3) + " times as fast");
     if (!output.empty()) rows.emplace_back("results", output.string());
     print_rows(stdout, name.first + " against " + name.second, rows);
   }

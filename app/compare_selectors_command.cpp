@@ -9,6 +9,8 @@
 #include <core/version.hpp>
 #include <sparse/selector_library.hpp>
 
+#include <algorithm>
+
 namespace supple {
 
 namespace {
@@ -53,7 +55,8 @@ void CompareSelectorsCommand::run() const {
     if (size < 1 || size > m)
       throw InputError("--sizes holds " + std::to_string(size) + ", expected 1 to the number of " +
                        std::string(component_name(body)) + ", " + std::to_string(m));
-  if (!output.empty()) make_folder(output);
+  if (std::ranges::find(selectors, "all") != selectors.end()) (void)num_components_to_weight(body);
+  const OutputFolder folder(output);
   const ReduceOptions options = reduce_options(*this, named, body);
   std::vector<PullScene> scenes;
   if (trajectories)
@@ -63,8 +66,8 @@ void CompareSelectorsCommand::run() const {
 
   std::vector<SelectorRun> results;
   for (const std::string& selector : selectors)
-    for (const Index size : sizes)
-      for (Index k = 0; k < runs; ++k) {
+    for (const Index size : selector == "all" ? std::vector<Index>{m} : sizes)
+      for (Index k = 0; k < (selector == "all" ? 1 : runs); ++k) {
         results.push_back(run_selector(study, selector, size, seed + static_cast<std::uint64_t>(k), progress_bar()));
         if (!output.empty()) write_runs(output / "runs.csv", results, study.scenes());  // hours of work survive an end
       }

@@ -108,7 +108,7 @@ void EditCommand::run() const {
   const double softest = modes.omega[modes.num_zero] * modes.omega[modes.num_zero];
   const std::vector<Handle> handles = make_handles(edits, softest, nodal_mass(reduced.body).sum());
   const auto path = handle_paths(edits, handles, rest);
-  if (!output.empty()) make_folder(output);
+  const OutputFolder folder(output);
   times.finish("read model");
 
   const Progress progress = progress_bar();

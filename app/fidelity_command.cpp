@@ -22,6 +22,11 @@ namespace supple {
 
 namespace {
 
+bool names_pca(const std::string& subspace) {
+  const std::vector<std::string> parts = parts_of_subspace(subspace);
+  return std::ranges::find(parts, "pca") != parts.end();
+}
+
 /// The last shape of a scene in one space.
 struct Shape {
   std::string name;
@@ -100,25 +105,19 @@ void draw_shapes(const std::filesystem::path& path, const Body& body, const std:
   write_coloured_picture(path, objects, "distance [m]", 500 * static_cast<int>(shapes.size()), 700);
 }
 
-}  // namespace
+/// Modes r, at least as many as asked for, whose derivatives can fill d dimensions: r + r (r + 1) / 2 >= d.
+Index modes_to_differentiate(Index modes, Index d) {
+  while (modes + modes * (modes + 1) / 2 < d) ++modes;
+  return modes;
+}
 
-void FidelityCommand::run() const {
-  set_num_threads(threads);
-  require_writable(json);
-  const Stopwatch total;
-  const NamedMesh named = load_mesh(mesh);
-  const Body body = load_body(*this, named);
-  const EditScene edits = read_edit_scene(scene, body);
-  ProblemOptions problem = *this;
-  problem.subspace = std::find(subspaces.begin(), subspaces.end(), "pca") != subspaces.end() ? "pca" : "extended";
-  const ReduceOptions options = reduce_options(problem, named, body);  // its subspace says whether there are snapshots
+/// The full shape of a scene first, then those of the extended basis and of the other subspaces.
+std::vector<Shape> shapes_of(const Body& body, const EditScene& edits, const ReduceOptions& options,
+                             const std::vector<std::string>& subspaces, const Progress& progress) {
   StaticOptions solver;  // Newton, whatever the scene says: it is the reference
   solver.tolerance = edits.tolerance.value_or(solver.tolerance);
   solver.max_iterations = edits.max_iterations.value_or(solver.max_iterations);
-  if (!output.empty()) make_folder(output);
-  const Progress progress = progress_bar();
   const Points& rest = node_positions(body);
-
   std::vector<Shape> shapes(1);
   shapes[0].name = "full";
   with_force_model(body, [&]<typename Model>(const std::shared_ptr<const Model>& force) {
@@ -130,7 +129,8 @@ void FidelityCommand::run() const {
     const auto in_subspace = [&](const std::string& name, auto&& visit) {
       SubspaceChoice choice = options.subspace_choice();
       choice.name = name;
-      choice.dimension = d;
+      if (name.find('+') == std::string::npos) choice.dimension = d;
+      if (name == "derivatives") choice.modes = modes_to_differentiate(choice.modes, d);
       with_subspace(*system, choice, progress, quiet, visit);
     };
     // the extended basis first: it sets the dimension and the handles
@@ -184,20 +184,16 @@ void FidelityCommand::run() const {
     }
     shapes[0].solve_seconds = solve_seconds;
   });
-  if (std::find(subspaces.begin(), subspaces.end(), "extended") == subspaces.end()) shapes.erase(shapes.begin() + 1);
-  if (!output.empty()) draw_shapes(output / "shapes.png", body, shapes);
-  clear_progress();
+  return shapes;
+}
 
+/// The table of a scene, and its part of the report.
+std::string describe(const Body& body, const std::vector<Shape>& shapes, const std::string& scene, Json& report) {
   const Shape& full = shapes.front();
   std::string table = "| space | d | rms distance [% of the diagonal] | L² over " +
                       std::string(std::holds_alternative<Shell>(body) ? "area" : "volume") +
                       " | to its own minimum | elastic energy [J] | of handles [J] | built [s] | solved [s] |\n"
                       "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
-  Json report{{"command", "fidelity"}, {"version", SUPPLE_VERSION}, {"mesh", mesh}, {"scene", scene.string()}};
-  report["diagonal"] = bounding_box(rest).diagonal();
-  report["measure"] = measure(body);
-  report["options"] = problem_json(problem, options, body);
-  report["shapes"] = Json::array();
   for (const Shape& shape : shapes) {
     const Distance off = distance(body, shape.displacement, full.displacement);
     Json own_json = nullptr;  // where the shape of a subspace leads to no minimum
@@ -207,17 +203,18 @@ void FidelityCommand::run() const {
       own = shown(from_own.l2, 3);
       own_json = {{"energy", shape.own_energy}, {"rms_over_diagonal", from_own.rms}, {"l2_over_measure", from_own.l2}};
     }
-    report["shapes"].push_back({{"space", shape.name},
-                                {"dimension", shape.dimension},
-                                {"rms_over_diagonal", off.rms},
-                                {"l2_over_measure", off.l2},
-                                {"elastic_energy", shape.elastic},
-                                {"control_energy", shape.control},
-                                {"missed_solves", shape.missed},
-                                {"led_by", shape.led_by},
-                                {"own_minimum", std::move(own_json)},
-                                {"construction_seconds", shape.construction_seconds},
-                                {"solve_seconds", shape.solve_seconds}});
+    report.push_back({{"scene", scene},
+                      {"space", shape.name},
+                      {"dimension", shape.dimension},
+                      {"rms_over_diagonal", off.rms},
+                      {"l2_over_measure", off.l2},
+                      {"elastic_energy", shape.elastic},
+                      {"control_energy", shape.control},
+                      {"missed_solves", shape.missed},
+                      {"led_by", shape.led_by},
+                      {"own_minimum", std::move(own_json)},
+                      {"construction_seconds", shape.construction_seconds},
+                      {"solve_seconds", shape.solve_seconds}});
     table += "| " + shape.name + " | " + std::to_string(shape.dimension) + " | " + shown(100 * off.rms, 3) + " | " +
              shown(off.l2, 3) + " | " + own + " | " + shown(shape.elastic, 4) + " | " + shown(shape.control, 3) +
              " | " + shown(shape.construction_seconds, 3) + " | " + shown(shape.solve_seconds, 3) + " |\n";
@@ -225,15 +222,48 @@ void FidelityCommand::run() const {
       warn(shape.name + ": " + std::to_string(shape.missed) + " of " + std::to_string(shape.solves) +
            " solves missed the tolerance; try more increments");
   }
+  return table;
+}
+
+}  // namespace
+
+void FidelityCommand::run() const {
+  set_num_threads(threads);
+  require_writable(json);
+  const Stopwatch total;
+  const NamedMesh named = load_mesh(mesh);
+  const Body body = load_body(*this, named);
+  std::vector<EditScene> edits;
+  for (const std::filesystem::path& scene : scenes) edits.push_back(read_edit_scene(scene, body));
+  ProblemOptions problem = *this;
+  // snapshots are read if some subspace is made of them
+  problem.subspace = std::ranges::any_of(subspaces, names_pca) ? "pca" : "extended";
+  const ReduceOptions options = reduce_options(problem, named, body);
+  const OutputFolder folder(output);
+
+  Json report{{"command", "fidelity"}, {"version", SUPPLE_VERSION}, {"mesh", mesh}};
+  report["diagonal"] = bounding_box(node_positions(body)).diagonal();
+  report["measure"] = measure(body);
+  report["options"] = problem_json(problem, options, body);
+  report["shapes"] = Json::array();
+  std::string text;
+  for (std::size_t k = 0; k < scenes.size(); ++k) {
+    std::vector<Shape> shapes = shapes_of(body, edits[k], options, subspaces, progress_bar());
+    if (std::ranges::find(subspaces, "extended") == subspaces.end()) shapes.erase(shapes.begin() + 1);
+    const std::string number = scenes.size() == 1 ? "" : "-" + std::to_string(k + 1);
+    if (!output.empty()) draw_shapes(output / ("shapes" + number + ".png"), body, shapes);
+    clear_progress();
+    text += (k == 0 ? "" : "\n") + ("Shapes of " + mesh) + " under " + edits[k].description + "\n\n" +
+            describe(body, shapes, scenes[k].string(), report["shapes"]);
+  }
   report["peak_memory"] = peak_resident_memory();
   report["seconds"] = {{"total", total.seconds()}};
   if (!output.empty()) {
     const ExitGuard guard;
-    write_file(output / "table.md", table);
+    write_file(output / "table.md", text);
   }
   if (!output.empty()) write_json(output / "report.json", report);
-  if (!is_stdout(json))
-    std::fputs(("Shapes of " + mesh + " under " + edits.description + "\n\n" + table).c_str(), stdout);
+  if (!is_stdout(json)) std::fputs(text.c_str(), stdout);
   write_json(json, report);
 }
 

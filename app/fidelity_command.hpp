@@ -8,9 +8,9 @@
 
 namespace supple {
 
-/// `supple fidelity`: how well subspaces of one dimension hold the shapes of a scene (the paper's Table 2, Figure 9).
+/// `supple fidelity`: how well subspaces of one dimension hold the shapes of scenes (the paper's Table 2, Figure 9).
 struct FidelityCommand : ProblemOptions {
-  std::filesystem::path scene;
+  std::vector<std::filesystem::path> scenes;
   std::vector<std::string> subspaces = {"extended", "derivatives", "modal", "skinning"};
   std::filesystem::path output;  ///< folder; empty: only the report
   std::filesystem::path json;

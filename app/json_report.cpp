@@ -55,6 +55,11 @@ void require_writable(const std::filesystem::path& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error))
     throw InputError(path.string() + ": cannot be written: it is a folder");
+  if (is_stream(path)) {
+    if (access(path.c_str(), W_OK) != 0)
+      throw InputError(path.string() + ": cannot be written: it is not open for that");
+    return;
+  }
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder, error))
     throw InputError(path.string() + ": cannot be written: there is no folder " + folder.string());
@@ -62,11 +67,18 @@ void require_writable(const std::filesystem::path& path) {
     throw InputError(path.string() + ": cannot be written: " + folder.string() + " is not open for writing");
 }
 
-void make_folder(const std::filesystem::path& folder) {
+OutputFolder::OutputFolder(const std::filesystem::path& folder) {
+  if (folder.empty()) return;
   std::error_code error;
+  if (!std::filesystem::exists(folder, error)) made_ = folder;
   std::filesystem::create_directories(folder, error);
   if (!error && !std::filesystem::is_directory(folder, error)) error = std::make_error_code(std::errc::not_a_directory);
   if (error) throw InputError(folder.string() + ": the folder cannot be made: " + error.message());
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code not_empty;
+  if (!made_.empty() && std::uncaught_exceptions() > exceptions_) std::filesystem::remove(made_, not_empty);
 }
 
 double option_quantity(std::string_view option, std::string_view text, std::string_view unit) {

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <exception>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -50,8 +51,20 @@ class StageTimes {
 
 /// \throws InputError if a file could not be created at this path; "-" and no path always pass.
 void require_writable(const std::filesystem::path& path);
-/// Creates the folder, with those above it. \throws InputError naming it and the reason.
-void make_folder(const std::filesystem::path& folder);
+/// The folder of a command's results, made with those above it. A failure that leaves before anything was written
+/// takes it away again.
+class OutputFolder {
+ public:
+  /// \param folder  empty: none.  \throws InputError naming it and the reason.
+  explicit OutputFolder(const std::filesystem::path& folder);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+ private:
+  std::filesystem::path made_;
+  int exceptions_ = std::uncaught_exceptions();
+};
 
 /// The value of an option such as "2 MPa" in `unit`. \throws InputError naming the option.
 double option_quantity(std::string_view option, std::string_view text, std::string_view unit);

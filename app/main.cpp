@@ -20,12 +20,49 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <new>
 #include <optional>
 
 namespace {
 
 using namespace supple;
+
+/// A whole number of at least `least` that fits into 63 bits, without sign, point or exponent.
+CLI::Validator whole_number(Index least = 1) {
+  return {[least](std::string& text) -> std::string {
+            Index value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            const bool whole = error == std::errc() && end == text.data() + text.size();
+            return whole && value >= least ? ""
+                                           : "'" + text + "' is no whole number from " + std::to_string(least) + " up";
+          },
+          ""};
+}
+
+CLI::Validator positive_number() {
+  return {[](std::string& text) -> std::string {
+            double value = 0;
+            return CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value)
+                       ? ""
+                       : "'" + text + "' is no number > 0";
+          },
+          ""};
+}
+
+/// Names of subspaces, and sums of them.
+CLI::Validator subspace_name() {
+  return {[](std::string& text) -> std::string {
+            try {
+              (void)parts_of_subspace(text);
+            } catch (const std::invalid_argument& error) {
+              return error.what();
+            }
+            return "";
+          },
+          ""};
+}
 
 void add_json(CLI::App& app, std::filesystem::path& json) {
   app.add_option("--json", json, "Report for machines; '-': to stdout, instead of the text")->type_name("FILE");
@@ -58,7 +95,7 @@ std::string material_help() {
   return text;
 }
 
-/// The object and the method of training, for all commands that pose a fitting problem.
+/// The object and the size of its subspace, for all commands that begin with a mesh.
 void add_problem(CLI::App& command, ProblemOptions& c) {
   command
       .add_option("MESH", c.mesh,
@@ -109,6 +146,28 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
   each(c.fix_region, "--fix-region", "TAG", "Hold the nodes of a region, by name or number");
 
   const auto method = "Method";
+  command.add_option("--dimension", c.dimension, "Of the subspace, where the modes leave a choice")
+      ->type_name("D")
+      ->check(whole_number())
+      ->group(method);
+  command.add_option("--snapshots", c.snapshots, "Displacements for --subspace pca: .npy, tensor file or trajectory")
+      ->type_name("FILE")
+      ->group(method);
+  command
+      .add_option("--modes", c.modes,
+                  "Vibration modes, rigid ones included [15]; those that derivatives are taken of: flexible ones")
+      ->type_name("R")
+      ->check(whole_number())
+      ->group(method);
+  command.add_option("--seed", c.seed, "Of all random choices")
+      ->capture_default_str()
+      ->check(whole_number(0))
+      ->group(method);
+}
+
+/// The subspace and the training, for commands that fit forces.
+void add_training(CLI::App& command, ProblemOptions& c) {
+  const auto method = "Method";
   command.add_option("--recipe", c.recipe, "Where unset options come from: default, or paper")
       ->capture_default_str()
       ->check(CLI::IsMember({"default", "paper"}))
@@ -117,18 +176,10 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
       .add_option(
           "--subspace", c.subspace,
           "extended (modes under all linear maps), modal (modes alone), derivatives (modal derivatives), skinning "
-          "(skinning eigenmodes), pca (of --snapshots)")
+          "(skinning eigenmodes), pca (of --snapshots), or several, as in extended+pca: what they span together")
       ->capture_default_str()
-      ->check(CLI::IsMember(known_subspaces()))
+      ->check(subspace_name())
       ->group(method);
-  command.add_option("--dimension", c.dimension, "Of the subspace, where the modes leave a choice")
-      ->type_name("D")
-      ->check(CLI::PositiveNumber)
-      ->group(method);
-  command.add_option("--snapshots", c.snapshots, "Displacements for --subspace pca: .npy, tensor file or trajectory")
-      ->type_name("FILE")
-      ->group(method);
-  command.add_option("--modes", c.modes, "Vibration modes, rigid ones included [15]")->type_name("R")->group(method);
   command.add_option("--poses", c.poses, "Training poses [300; paper: 1000]")->type_name("T")->group(method);
   command
       .add_option("--amplitude", c.amplitudes,
@@ -158,13 +209,13 @@ void add_problem(CLI::App& command, ProblemOptions& c) {
                   "Fresh poses to measure the error on, at each of three amplitudes; 0: none [100]")
       ->type_name("N")
       ->group(method);
-  command.add_option("--seed", c.seed, "Of all random choices")->capture_default_str()->group(method);
 }
 
 CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
   CLI::App& reduce = *app.add_subcommand("reduce", "Make a reduced model of a mesh");
   const auto files = "Output";
   add_problem(reduce, c);
+  add_training(reduce, c);
   reduce.add_option("-o,--output", c.model, "The model's file")->required()->type_name("MODEL")->group(files);
   add_json(reduce, c.json);
   reduce.get_option("--json")->group(files);
@@ -180,6 +231,7 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
       .add_option("--points", c.points,
                   "Largest number of components that stand for all [150; 1000 with --target-error]")
       ->type_name("S")
+      ->check(whole_number())
       ->group(method);
   reduce.add_option("--target-error", c.target_error, "Take as few components as reach this training error")
       ->type_name("SHARE")
@@ -209,7 +261,7 @@ CLI::App& add_simulate(CLI::App& app, SimulateCommand& c) {
       ->check(CLI::IsMember({"newton", "bfgs", "broyden"}));
   simulate.add_option("--tolerance", c.tolerance, "Relative residual of a step [1e-6]")
       ->type_name("SHARE")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   simulate.add_option("-o,--output", c.output, "Folder for trajectory, energies, pictures and ParaView's series.pvd")
       ->type_name("DIR");
   simulate.add_option("--every", c.every, "A frame after so many steps [at most 100 frames]")->type_name("N");
@@ -250,6 +302,7 @@ CLI::App& add_compare_selectors(CLI::App& app, CompareSelectorsCommand& c) {
   CLI::App& compare =
       *app.add_subcommand("compare-selectors", "Run selectors over sizes and seeds on one fitting problem");
   add_problem(compare, c);
+  add_training(compare, c);
   const auto comparison = "Comparison";
   compare.add_option("--selectors", c.selectors, "Names, separated by commas")
       ->delimiter(',')
@@ -302,17 +355,17 @@ CLI::App& add_select(CLI::App& app, SelectCommand& c) {
                   "Rows of a training pose, for --train-groups: they stand or fall together")
       ->capture_default_str()
       ->type_name("N")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number())
       ->group(problem);
 
   const auto method = "Method";
   select.add_option("--points", c.points, "Largest number of columns; may be left out with --target-error")
       ->type_name("S")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number())
       ->group(method);
   select.add_option("--target-error", c.target_error, "Take as few columns as reach |A w - b| / |b| <= SHARE")
       ->type_name("SHARE")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->group(method);
   c.selector = known_selectors().front();
   select.add_option("--selector", c.selector, "How they are chosen; htp and niht give weights of any sign")
@@ -334,9 +387,12 @@ CLI::App& add_select(CLI::App& app, SelectCommand& c) {
       .add_option("--train-groups", c.train_groups,
                   "Groups of --group-size rows that 'greedy' compares columns on, anew in each step [all]")
       ->type_name("N")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number())
       ->group(method);
-  select.add_option("--seed", c.seed, "Of all random choices")->capture_default_str()->group(method);
+  select.add_option("--seed", c.seed, "Of all random choices")
+      ->capture_default_str()
+      ->check(whole_number(0))
+      ->group(method);
   add_json(select, c.json);
   add_threads(select, c.threads);
   select.footer(
@@ -372,14 +428,20 @@ CLI::App& add_edit(CLI::App& app, EditCommand& c) {
 CLI::App& add_fidelity(CLI::App& app, FidelityCommand& c) {
   CLI::App& fidelity = *app.add_subcommand("fidelity", "Compare subspaces by the shapes that they let an object take");
   add_problem(fidelity, c);
-  fidelity.add_option("--scene", c.scene, "Handles and their motions, see docs/edit-scene.md")
+  fidelity.add_option("--scene", c.scenes, "Handles and their motions, see docs/edit-scene.md; may be repeated")
       ->required()
-      ->type_name("FILE.json");
-  fidelity.add_option("--subspaces", c.subspaces, "Names, separated by commas; all of the extended one's dimension")
+      ->type_name("FILE.json")
+      ->expected(1)
+      ->take_all();
+  fidelity
+      .add_option(
+          "--subspaces", c.subspaces,
+          "Names, separated by commas; of the extended one's dimension, or of the next below that they can have")
       ->delimiter(',')
       ->capture_default_str()
-      ->check(CLI::IsMember(known_subspaces()));
-  fidelity.add_option("-o,--output", c.output, "Folder for table.md, shapes.png and the report")->type_name("DIR");
+      ->check(subspace_name());
+  fidelity.add_option("-o,--output", c.output, "Folder for table.md, pictures of the shapes and the report")
+      ->type_name("DIR");
   add_json(fidelity, c.json);
   add_threads(fidelity, c.threads);
   fidelity.footer("Example:\nsupple fidelity cactus.off --scene bend.json -o fidelity");

@@ -3,7 +3,9 @@
 #include <app/problem_options.hpp>
 #include <io/json_fields.hpp>
 #include <io/node_sets.hpp>
+#include <reduction/named_subspace.hpp>
 
+#include <algorithm>
 #include <concepts>
 #include <optional>
 #include <set>
@@ -190,8 +192,10 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
   options.subspace = problem.subspace;
   if (problem.dimension) options.dimension = *problem.dimension;
   if (problem.snapshots) options.snapshots = read_poses(*problem.snapshots, named.nodes());
-  if (options.subspace == "pca" && !problem.snapshots) throw InputError("--subspace pca needs --snapshots");
-  if (options.subspace != "pca" && problem.snapshots) throw InputError("--snapshots are for --subspace pca");
+  const std::vector<std::string> parts = parts_of_subspace(options.subspace);
+  const bool pca = std::ranges::find(parts, "pca") != parts.end();
+  if (pca && !problem.snapshots) throw InputError("--subspace pca needs --snapshots");
+  if (!pca && problem.snapshots) throw InputError("--snapshots are for --subspace pca");
   options.seed = problem.seed;
   if (problem.modes) options.modes = *problem.modes;
   if (problem.poses) options.poses.count = *problem.poses;
@@ -203,6 +207,15 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
       inverted_rule(law(body), problem.inverted ? std::optional(inverted_poses(*problem.inverted)) : std::nullopt);
   if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, named.nodes());
   return options;
+}
+
+Index num_components_to_weight(const Body& body) {
+  constexpr Index most = 5000;
+  const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
+  if (m > most)
+    throw InputError("the selector all weights every one of " + std::to_string(m) + " " +
+                     std::string(component_name(body)) + ", which is for at most " + std::to_string(most));
+  return m;
 }
 
 Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, const Body& body) {

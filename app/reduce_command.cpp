@@ -26,6 +26,7 @@ ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const
   }
   if (command.points) options.points = *command.points;
   if (command.selector) options.selector = *command.selector;
+  if (options.selector == "all" && !command.points) options.points = num_components_to_weight(body);
   return options;
 }
 
@@ -177,7 +178,7 @@ void ReduceCommand::run() const {
   const NamedMesh named = load_mesh(mesh);
   const Body body = load_body(*this, named);
   const ReduceOptions options = method(*this, named, body);
-  if (!plots.empty()) make_folder(plots);
+  const OutputFolder folder(plots);
   const double read_seconds = watch.seconds();
 
   ReduceReport report;

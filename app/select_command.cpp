@@ -63,6 +63,10 @@ Selection read_selection(const std::filesystem::path& path, Index cols) {
   Selection selection;
   selection.indices = report.integers("indices", between(0, static_cast<double>(cols - 1)));
   selection.weights = report.numbers("weights", selection.size());
+  std::vector<Index> sorted = selection.indices;
+  std::ranges::sort(sorted);
+  if (const auto twice = std::ranges::adjacent_find(sorted); twice != sorted.end())
+    report.fail("indices", "holds " + std::to_string(*twice) + " twice");
   return selection;
 }
 

@@ -208,7 +208,7 @@ void SimulateCommand::run() const {
   const ReducedModel reduced = load_model(model);
   Scene what = scene ? read_scene(*scene, reduced.body) : pluck_scene(reduced);
   const SimulationOptions options = decide(*this, reduced, what);
-  if (!output.empty()) make_folder(output);
+  const OutputFolder folder(output);
   times.finish("read model");
 
   const Progress progress = progress_bar();

@@ -9,6 +9,7 @@
 #include <string>
 #include <system_error>
 #include <unistd.h>
+#include <utility>
 
 namespace supple {
 
@@ -16,15 +17,27 @@ namespace {
 
 std::filesystem::path follow_links(const std::filesystem::path& path) {
   std::error_code no_link;
-  return std::filesystem::is_symlink(path, no_link) ? std::filesystem::weakly_canonical(path, no_link) : path;
+  const bool follow = std::filesystem::is_symlink(path, no_link) && !is_stream(path);
+  return follow ? std::filesystem::weakly_canonical(path, no_link) : path;
 }
 
 }  // namespace
+
+bool is_stream(const std::filesystem::path& path) {
+  std::error_code unknown;
+  const std::filesystem::file_status status = std::filesystem::status(path, unknown);
+  return exists(status) && !is_regular_file(status) && !is_directory(status);
+}
 
 OutputFile::OutputFile(const std::filesystem::path& path) : path_(follow_links(path)) {
   if (!path_.has_filename()) throw InputError(path.string() + ": cannot be written: it names no file");
   if (std::error_code unknown; std::filesystem::is_directory(path_, unknown))
     throw InputError(path.string() + ": cannot be written: it is a folder");
+  if (is_stream(path_)) {
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) fail("open");
+    return;
+  }
   static std::atomic<unsigned> serial{0};
   do {
     temporary_ = path_.parent_path() / ("." + path_.filename().string() + "." + std::to_string(::getpid()) + "-" +
@@ -37,7 +50,7 @@ OutputFile::OutputFile(const std::filesystem::path& path) : path_(follow_links(p
 OutputFile::~OutputFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  ::unlink(temporary_.c_str());
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
@@ -49,6 +62,10 @@ void OutputFile::write(std::span<const std::byte> bytes) {
 }
 
 void OutputFile::commit() {
+  if (temporary_.empty()) {
+    if (::close(std::exchange(descriptor_, -1)) != 0) fail("write");
+    return;
+  }
   if (::fsync(descriptor_) != 0) fail("write");
   if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("replace");
   ::close(descriptor_);

@@ -9,9 +9,12 @@
 
 namespace supple {
 
+/// Whether this is a pipe, a terminal, /dev/null and the like: what takes bytes and cannot be replaced.
+bool is_stream(const std::filesystem::path& path);
+
 /// Collects output under a temporary name in the target's folder; commit() brings it to the disk and then
 /// gives it the target's name in one step. Until then, and after any failure, the old file stands as it was
-/// and nothing partial remains. Symbolic links are followed.
+/// and nothing partial remains. Symbolic links are followed. Streams are written to at once.
 /// \throws InputError naming the file and the system's reason, from every member but the destructor.
 class OutputFile {
  public:

@@ -14,9 +14,10 @@ namespace supple {
 struct FileSurface {
   std::string format;
   std::vector<Point> nodes;
-  std::vector<Index> corners;         ///< of all faces, one after the other
-  std::vector<std::size_t> face_end;  ///< where the corners of each face end
-  std::int64_t first_number = 0;      ///< of nodes and of faces
+  std::vector<Index> corners;                        ///< of all faces, one after the other
+  std::vector<std::size_t> face_end;                 ///< where the corners of each face end
+  std::int64_t first_number = 0;                     ///< of nodes and of faces
+  std::string numbering = "numbers as in the file";  ///< what they mean, for messages
   std::vector<std::string> warnings;
   Index num_lower = 0;  ///< lines and points, left out
 

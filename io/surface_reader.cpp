@@ -144,7 +144,7 @@ TriangleMesh read_triangle_mesh(const std::filesystem::path& path, MeshNotes* no
                               " turned over against the others: turned back");
     check_mesh(mesh, numbers);
   } catch (const std::invalid_argument& error) {
-    throw InputError(name + ": " + error.what() + " (numbers as in the file)");
+    throw InputError(name + ": " + error.what() + " (" + file.numbering + ")");
   }
   if (notes) {
     warn_of_surprises(mesh, numbers, file.warnings);

@@ -36,6 +36,7 @@ class Positions {
 };
 
 void tell_of_merging(FileSurface& surface) {
+  surface.numbering = "triangles by their place in the file, vertices in the order in which they first come";
   surface.first_number = 1;
   surface.warnings.push_back(std::to_string(surface.corners.size()) + " corners merged to " +
                              std::to_string(surface.nodes.size()) +

@@ -10,14 +10,32 @@ const std::vector<std::string>& known_subspaces() {
   return names;
 }
 
+std::vector<std::string> parts_of_subspace(const std::string& name) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= name.size();) {
+    const std::size_t end = std::min(name.find('+', begin), name.size());
+    const std::string part = name.substr(begin, end - begin);
+    if (std::ranges::find(known_subspaces(), part) == known_subspaces().end()) {
+      std::string known;
+      for (const std::string& other : known_subspaces()) known += (known.empty() ? "" : ", ") + other;
+      throw std::invalid_argument("subspace '" + part + "' is not known, expected one of " + known +
+                                  ", or several with '+' between");
+    }
+    require(std::ranges::find(parts, part) == parts.end(), "subspace '" + name + "' has '" + part + "' twice");
+    parts.push_back(part);
+    begin = end + 1;
+  }
+  return parts;
+}
+
 void check(const SubspaceChoice& choice) {
-  std::string known;
-  for (const std::string& name : known_subspaces()) known += (known.empty() ? "" : ", ") + name;
-  require(std::find(known_subspaces().begin(), known_subspaces().end(), choice.name) != known_subspaces().end(),
-          "subspace '" + choice.name + "' is not known, expected one of " + known);
+  const std::vector<std::string> parts = parts_of_subspace(choice.name);
+  require(parts.size() == 1 || choice.dimension == 0,
+          "subspace '" + choice.name + "' has the dimensions of its parts, expected no other");
   require(choice.modes >= 1, "number of modes is " + std::to_string(choice.modes) + ", expected at least 1");
   require(choice.dimension >= 0, "dimension is " + std::to_string(choice.dimension) + ", expected 0 or more");
-  require(choice.name != "pca" || choice.snapshots.size() > 0, "subspace 'pca' needs snapshots");
+  require(std::ranges::find(parts, "pca") == parts.end() || choice.snapshots.size() > 0,
+          "subspace 'pca' needs snapshots");
 }
 
 Index skinning_weights(const SubspaceChoice& choice) {

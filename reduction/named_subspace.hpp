@@ -1,19 +1,21 @@
 #pragma once
 /// \file Subspaces by name, for commands and comparisons.
 
+#include <reduction/joined_basis.hpp>
 #include <reduction/modal_derivatives.hpp>
 #include <reduction/pca_basis.hpp>
 #include <reduction/skinning_modes.hpp>
 
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace supple {
 
 /// A subspace as words and numbers tell it.
 struct SubspaceChoice {
-  std::string name = "extended";  ///< one of known_subspaces()
+  std::string name = "extended";  ///< one of known_subspaces(), or several with '+' between: what they span together
   Index modes = 15;               ///< vibration modes, rigid ones included; of "derivatives" the flexible ones
   Index dimension = 0;            ///< d to aim at, where the modes leave a choice; 0: what they give
   Matrix snapshots = {};          ///< 3n × T displacements [m], for "pca"
@@ -28,18 +30,25 @@ struct SubspaceChoice {
 ///   "pca"          principal components of the snapshots
 const std::vector<std::string>& known_subspaces();
 
-/// \throws std::invalid_argument for an unknown name, a negative dimension, or "pca" without snapshots.
+/// "extended+pca" → "extended", "pca". \throws std::invalid_argument for an unknown name or one that comes twice.
+std::vector<std::string> parts_of_subspace(const std::string& name);
+
+/// \throws std::invalid_argument as parts_of_subspace, for a negative dimension, one of a union, or "pca" without
+/// snapshots.
 void check(const SubspaceChoice& choice);
 
 /// Number of weights of the skinning modes of a choice.
 Index skinning_weights(const SubspaceChoice& choice);
 
-/// Calls visit(subspace) with a shared pointer to a NodalBasis or a DenseBasis of the system.
+/// A basis whose structure is known at run time.
+using NamedSubspace = std::variant<std::shared_ptr<const NodalBasis>, std::shared_ptr<const DenseBasis>>;
+
+/// The basis of a system that one of known_subspaces() names.
 /// \param stage  runs a named stage: stage("vibration modes", [](auto share) { … }).
-template <typename System, typename Stage, typename Visitor>
-void with_subspace(const System& system, const SubspaceChoice& choice, const Progress& progress, Stage&& stage,
-                   Visitor&& visit) {
-  const auto share = [](auto&& basis) {
+template <typename System, typename Stage>
+NamedSubspace single_subspace(const System& system, const SubspaceChoice& choice, const Progress& progress,
+                              Stage&& stage) {
+  const auto share = [](auto&& basis) -> NamedSubspace {
     using Basis = std::remove_cvref_t<decltype(basis)>;
     return std::make_shared<const Basis>(std::forward<decltype(basis)>(basis));
   };
@@ -51,34 +60,57 @@ void with_subspace(const System& system, const SubspaceChoice& choice, const Pro
   };
   if (choice.name == "extended") {
     const VibrationModes vibration = modes(choice.modes);
-    visit(stage("subspace", [&](auto) {
+    return stage("subspace", [&](auto) {
       return share(extend_modes(vibration, system.model().rest_positions(), system.nodal_mass()));
-    }));
-  } else if (choice.name == "modal") {
+    });
+  }
+  if (choice.name == "modal") {
     VibrationModes vibration = modes(choice.dimension > 0 ? choice.dimension : choice.modes);
-    visit(share(DenseBasis{std::move(vibration.vectors),
-                           {vibration.omega, vibration.residuals, vibration.num_rigid, 0, vibration.notes}}));
-  } else if (choice.name == "derivatives") {
-    visit(stage("modes and derivatives", [&](auto) {
+    return share(DenseBasis{std::move(vibration.vectors),
+                            {vibration.omega, vibration.residuals, vibration.num_rigid, 0, vibration.notes}});
+  }
+  if (choice.name == "derivatives")
+    return stage("modes and derivatives", [&](auto) {
       return share(ModalDerivatives{.num_modes = choice.modes,
                                     .dimension = choice.dimension,
                                     .affine_fields = true,
                                     .tolerance = choice.tolerance,
                                     .seed = choice.seed,
                                     .progress = progress}(system));
-    }));
-  } else if (choice.name == "skinning") {
-    visit(stage("skinning modes", [&](auto) {
+    });
+  if (choice.name == "skinning")
+    return stage("skinning modes", [&](auto) {
       return share(SkinningModes{.num_weights = skinning_weights(choice),
                                  .tolerance = choice.tolerance,
                                  .seed = choice.seed,
                                  .progress = progress}(system));
-    }));
-  } else {
-    visit(stage("subspace", [&](auto) {
-      return share(PcaBasis{.snapshots = choice.snapshots, .dimension = choice.dimension}(system));
-    }));
-  }
+    });
+  return stage("subspace", [&](auto) {
+    return share(PcaBasis{.snapshots = choice.snapshots, .dimension = choice.dimension}(system));
+  });
+}
+
+/// Calls visit(subspace) with a shared pointer to a NodalBasis or a DenseBasis of the system: that of the choice, or
+/// what several span together, M-orthonormal.
+/// \param stage  as of single_subspace.
+template <typename System, typename Stage, typename Visitor>
+void with_subspace(const System& system, const SubspaceChoice& choice, const Progress& progress, Stage&& stage,
+                   Visitor&& visit) {
+  const std::vector<std::string> parts = parts_of_subspace(choice.name);
+  const auto part = [&](const std::string& name) {
+    SubspaceChoice one = choice;
+    one.name = name;
+    return single_subspace(system, one, progress, stage);
+  };
+  NamedSubspace sum = part(parts.front());
+  for (std::size_t k = 1; k < parts.size(); ++k)
+    sum = std::visit(
+        [&](const auto& first, const auto& second) -> NamedSubspace {
+          auto joined = join(*first, *second, system.nodal_mass());
+          return std::make_shared<const decltype(joined)>(std::move(joined));
+        },
+        sum, part(parts[k]));
+  std::visit(visit, sum);
 }
 
 }  // namespace supple

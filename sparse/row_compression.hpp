@@ -138,6 +138,10 @@ Selection select_on_rows(const CompressedRows& compressed, const S& select, cons
   const double compressing = since.seconds();
   SelectionRun<P> run(problem, request);
   run.account(static_cast<Index>(compressed.columns.size()));
+  if (request.warm_start.size() > 0) {  // which may be better on all rows than what follows from few
+    WorkingSet<P> start = run.start();
+    run.record(start, start.fit());
+  }
   std::vector<Index> position(problem.cols(), -1);
   for (std::size_t k = 0; k < compressed.columns.size(); ++k) position[compressed.columns[k]] = static_cast<Index>(k);
   const auto original = [&](const std::vector<Index>& positions) {

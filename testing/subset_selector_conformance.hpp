@@ -182,6 +182,16 @@ TYPED_TEST_P(SubsetSelectorConformance, StartsFromAnEarlierSelection) {
   this->expect_sound_answer(problem, asked);
 }
 
+TYPED_TEST_P(SubsetSelectorConformance, IsNoWorseThanABetterStart) {
+  const DenseProblem problem = this->problem();
+  SelectionRequest asked = this->request(10);
+  asked.warm_start = NnSp{.seed = 7}(problem, this->request(10));
+  const Selection chosen = this->expect_sound_answer(problem, asked);
+  if (SelectorTraits<TypeParam>::optimal_weights) {
+    EXPECT_LE(chosen.report.residual, asked.warm_start.report.residual * (1 + 1e-9));
+  }
+}
+
 TYPED_TEST_P(SubsetSelectorConformance, ReachesTheTargetErrorOrSaysWhyNot) {
   const DenseProblem problem = this->problem();
   for (double target : {0.9, 0.3, 1e-3, 1e-9}) {
@@ -312,10 +322,10 @@ TYPED_TEST_P(SubsetSelectorConformance, AsksForHeldOutErrors) {
 
 REGISTER_TYPED_TEST_SUITE_P(SubsetSelectorConformance, AnswersSoundly, GivesTheSameBitsAgainWhateverTheNumberOfThreads,
                             KeepsWhatItMust, KeepsEvenAColumnThatOnlyHarms, ChoosesAmongTheCandidates,
-                            StartsFromAnEarlierSelection, ReachesTheTargetErrorOrSaysWhyNot, NeedsNoSizeForATargetError,
-                            ChoosesOneColumn, TakesAllColumnsOfASmallProblem, BearsASizeBeyondTheRank,
-                            NeedsNothingWhereBIsZero, NeverTakesAZeroColumn, BearsCopiesOfColumns,
-                            BearsColumnsOfVeryDifferentScale, RefusesAnRhsWhoseSquareIsLost,
+                            StartsFromAnEarlierSelection, IsNoWorseThanABetterStart, ReachesTheTargetErrorOrSaysWhyNot,
+                            NeedsNoSizeForATargetError, ChoosesOneColumn, TakesAllColumnsOfASmallProblem,
+                            BearsASizeBeyondTheRank, NeedsNothingWhereBIsZero, NeverTakesAZeroColumn,
+                            BearsCopiesOfColumns, BearsColumnsOfVeryDifferentScale, RefusesAnRhsWhoseSquareIsLost,
                             RefusesNumbersThatAreNotFinite, RefusesRequestsThatMakeNoSense, AsksForHeldOutErrors);
 
 }  // namespace supple::test

@@ -43,6 +43,19 @@ TEST_F(CompareSelectorsTest, RunsEverySelectorAtEverySizeWithEverySeed) {
   EXPECT_THAT(page, HasSubstr("</html>"));
 }
 
+TEST_F(CompareSelectorsTest, RunsEveryOtherSelectorAndTheCeilingAtItsOwnSize) {
+  const json report = this->report(small({"--selectors",
+                                          "nn-htp-full,htp,niht,nn-niht,greedy,batched-greedy,nn-omp,ecsw,"
+                                          "ecm,all",
+                                          "--sizes", "20", "--runs", "2"}));
+  ASSERT_EQ(report["runs"].size(), 19u);
+  const json& all = report["runs"].back();
+  EXPECT_EQ(all["selector"], "all");
+  EXPECT_EQ(all["size"], 192);
+  EXPECT_LT(all["training_error"], 1e-7);
+  for (const json& run : report["runs"]) EXPECT_GE(run["training_error"], all["training_error"]);
+}
+
 TEST_F(CompareSelectorsTest, CountsGaussPointsOfHexahedra) {
   Arguments arguments = small({"--components", "gauss-points", "--selectors", "nn-sp", "--sizes", "20", "--runs", "1"});
   arguments[1] = "hexbox:6x2x2";
@@ -56,6 +69,9 @@ TEST_F(CompareSelectorsTest, RefusesWhatItCannotRun) {
   expect_refusal(small({"--sizes", "20,1000"}), {"--sizes", "1000"});
   expect_refusal(small({"--sizes", "0"}), {"--sizes"});
   expect_refusal(small({"--runs", "0"}), {"--runs"});
+  Arguments large = small({"--selectors", "all"});
+  large[1] = "bar:20x20x20";
+  expect_refusal(large, {"48000 tets", "at most 5000"});
   expect_refusal(small({"--json", "no/such/report.json"}), {"no/such"});
   EXPECT_TRUE(files().empty()) << files().front();
 }

@@ -132,6 +132,17 @@ TEST_F(EditCommandTest, RefusesBadScenesInOneLineAndLeavesNothing) {
   expect_refusal({"edit", "bar.supple", "--scene", "scene.json", "--tolerance", "0"}, {"tolerance"});
 }
 
+TEST_F(EditCommandTest, RefusesAHandleThatIsHeldAndTakesAnEmptyFolderAway) {
+  reduce({"--fix", "x<=0"});
+  write("scene.json", R"({"handles": [{"name": "root", "nodes": "x<=0"}],
+    "edits": [{"moves": [{"handle": "root", "translation": [1, 0, 0]}]}]})");
+  expect_refusal({"edit", "bar.supple", "--scene", "scene.json", "-o", "run"}, {"scene.json", "/handles/0", "'root'"});
+  write("scene.json", R"({"handles": [{"name": "tip", "nodes": "x>99%"}],
+    "edits": [{"moves": [{"handle": "tip", "translation": [1e200, 0, 0]}]}]})");
+  expect_refusal({"edit", "bar.supple", "--scene", "scene.json", "-o", "run"}, {"not finite"}, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder / "run"));
+}
+
 TEST_F(EditCommandTest, EditsInEverySubspace) {
   write("bend.json", bend);
   reduce();
@@ -144,7 +155,9 @@ TEST_F(EditCommandTest, EditsInEverySubspace) {
   const std::vector<Arguments> choices{{"--subspace", "derivatives", "--modes", "4", "--dimension", "24"},
                                        {"--subspace", "skinning", "--dimension", "48"},
                                        {"--subspace", "modal", "--modes", "18"},
-                                       {"--subspace", "pca", "--snapshots", "snapshots", "--dimension", "12"}};
+                                       {"--subspace", "pca", "--snapshots", "snapshots", "--dimension", "12"},
+                                       {"--subspace", "skinning+modal", "--modes", "14"},
+                                       {"--subspace", "modal+pca+extended", "--snapshots", "snapshots"}};
   for (const Arguments& choice : choices) {
     SCOPED_TRACE(choice[1]);
     reduce(choice);
@@ -155,6 +168,10 @@ TEST_F(EditCommandTest, EditsInEverySubspace) {
     EXPECT_EQ(supple({"simulate", "bar.supple", "--time", "0.1", "--step", "0.01", "--json", "-"}).exit_code, 0);
   }
   expect_refusal({"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "pca"}, {"--snapshots"});
+  expect_refusal({"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "modal+fourier"}, {"'fourier'", "extended"});
+  expect_refusal({"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "modal+modal"}, {"'modal' twice"});
+  expect_refusal({"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "modal+extended", "--dimension", "30"},
+                 {"modal+extended", "dimensions of its parts"});
   expect_refusal(
       {"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "derivatives", "--modes", "9", "--dimension", "10"},
       {"10"});
@@ -171,6 +188,7 @@ TEST_F(EditCommandTest, ComparesSubspacesByTheirShapes) {
   EXPECT_EQ(report["shapes"][1]["space"], "extended");
   EXPECT_EQ(report["shapes"][3]["space"], "modal");
   EXPECT_EQ(report["shapes"][3]["dimension"], report["shapes"][1]["dimension"]);
+  EXPECT_EQ(report["shapes"][2]["dimension"], report["shapes"][1]["dimension"]) << "as many derivatives as it takes";
   EXPECT_LT(off(1), 0.5 * off(3));  // the paper's finding
   EXPECT_GE(
       report["shapes"][1]["elastic_energy"].get<double>() + report["shapes"][1]["control_energy"].get<double>(),
@@ -195,6 +213,14 @@ TEST_F(EditCommandTest, ComparesSubspacesByTheirShapes) {
   ASSERT_EQ(own["shapes"].size(), 2u);
   EXPECT_EQ(own["shapes"][1]["space"], "pca");
   EXPECT_LT(own["shapes"][1]["rms_over_diagonal"], 0.1);
+  const json several = this->report({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--scene", "bend.json", "--modes",
+                                     "8", "--subspaces", "skinning,modal+skinning", "-o", "several"});
+  ASSERT_EQ(several["shapes"].size(), 6u);
+  for (int k = 0; k < 3; ++k)
+    EXPECT_EQ(several["shapes"][k]["rms_over_diagonal"], several["shapes"][k + 3]["rms_over_diagonal"]);
+  EXPECT_GT(several["shapes"][2]["dimension"], several["shapes"][1]["dimension"]);
+  EXPECT_TRUE(std::filesystem::exists(folder / "several/shapes-2.png"));
+  expect_refusal({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--poses", "5"}, {"--poses"});
   expect_refusal({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--subspaces", "pca"}, {"--snapshots"});
   expect_refusal({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--snapshots", "bent"}, {"pca"});
 }

@@ -237,8 +237,10 @@ TEST_F(SelectCommandTest, RefusesBadInputInOneLineAndLeavesNothing) {
   expect_refusal(job({"--points", "0"}), {"--points"});
   expect_refusal(job({"--points", "-3"}), {"--points"});
   expect_refusal(job({"--points", "many"}), {"--points", "many"});
+  expect_refusal(job({"--points", "5000000000000000000000"}), {"--points", "no whole number"});
+  expect_refusal(job(with(ten, {"--seed", "-1"})), {"--seed", "-1"});
   expect_refusal(job({"--target-error", "0"}), {"--target-error"});
-  expect_refusal(job({"--target-error", "nan"}), {"target_error"});
+  expect_refusal(job({"--target-error", "nan"}), {"--target-error", "nan"});
   expect_refusal(job(with(ten, {"--selector", "best"})), {"--selector", "best", "nn-sp"});
   expect_refusal(job(with(ten, {"--selector", "all"})), {"all 40 candidates", "--points 10"});
   expect_refusal(job(with(ten, {"--candidate", "x"})), {"'--candidate'", "--candidates"});
@@ -260,6 +262,8 @@ TEST_F(SelectCommandTest, RefusesBadInputInOneLineAndLeavesNothing) {
   expect_refusal(job(with(ten, {"--warm-start", "old.json"})), {"old.json: /indices/1 is 40"});
   write("old.json", R"({"indices": [1, 2], "weights": [1]})");
   expect_refusal(job(with(ten, {"--warm-start", "old.json"})), {"old.json: /weights"});
+  write("old.json", R"({"indices": [3, 3], "weights": [1, 1]})");
+  expect_refusal(job(with(ten, {"--warm-start", "old.json"})), {"old.json: /indices", "3 twice"});
   write("old.json", R"({"weights": [1]})");
   expect_refusal(job(with(ten, {"--warm-start", "old.json"})), {"old.json: /indices is missing"});
 

@@ -9,6 +9,8 @@
 #include <iterator>
 #include <string>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 
 namespace supple {
@@ -55,6 +57,24 @@ TEST_F(OutputFileTest, TwoWritersOfOneFileDoNotMix) {
   second.commit();
   EXPECT_EQ(content(), "second");
   EXPECT_EQ(num_entries(), 1);
+}
+
+TEST_F(OutputFileTest, WritesIntoAPipeAndLeavesItOne) {
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  fs::create_symlink(path, folder / "link");
+  for (const fs::path& target : {path, folder / "link"}) {
+    std::string read;
+    std::thread reader([&] { read = content(); });
+    write_file(target, "through");
+    reader.join();
+    EXPECT_EQ(read, "through");
+    EXPECT_TRUE(fs::is_fifo(path));
+    EXPECT_EQ(num_entries(), 2);
+  }
+  EXPECT_TRUE(is_stream(path));
+  EXPECT_TRUE(is_stream("/dev/null"));
+  EXPECT_FALSE(is_stream(folder));
+  EXPECT_FALSE(is_stream(folder / "none"));
 }
 
 TEST_F(OutputFileTest, FollowsSymbolicLinks) {
