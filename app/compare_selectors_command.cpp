@@ -7,6 +7,7 @@
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
 #include <core/version.hpp>
+#include <sparse/greedy_cubature.hpp>
 #include <sparse/selector_library.hpp>
 
 #include <algorithm>
@@ -16,11 +17,14 @@ namespace supple {
 namespace {
 
 SelectorRun run_selector(const SelectionStudy& study, const std::string& selector, Index size, std::uint64_t seed,
-                         const Progress& progress) {
+                         std::optional<Index> train_groups, const Progress& progress) {
   SelectionRequest request(size);
   request.progress = progress;
   const double before = processor_seconds();
-  const Selection selection = select_by_name(selector, study.problem(), request, seed);
+  const Selection selection =
+      selector == "greedy" && train_groups
+          ? GreedyCubature{.subset_groups = *train_groups, .seed = seed}(study.problem(), request)
+          : select_by_name(selector, study.problem(), request, seed);
   const double used = processor_seconds() - before;
   const auto points = static_cast<Index>((selection.weights.array() != 0).count());
   return {selector, size, seed, points, used, selection.report, study.measure(selection)};
@@ -46,6 +50,8 @@ std::string description(const CompareSelectorsCommand& command, const ReduceOpti
 void CompareSelectorsCommand::run() const {
   set_num_threads(threads);
   require_writable(json);
+  if (train_groups && std::ranges::find(selectors, "greedy") == selectors.end())
+    throw InputError("--train-groups is for the selector greedy, which is not among --selectors");
   if (runs < 1) throw InputError("--runs is " + std::to_string(runs) + ", expected at least 1");
   const Stopwatch total;
   const NamedMesh named = load_mesh(mesh);
@@ -68,7 +74,8 @@ void CompareSelectorsCommand::run() const {
   for (const std::string& selector : selectors)
     for (const Index size : selector == "all" ? std::vector<Index>{m} : sizes)
       for (Index k = 0; k < (selector == "all" ? 1 : runs); ++k) {
-        results.push_back(run_selector(study, selector, size, seed + static_cast<std::uint64_t>(k), progress_bar()));
+        results.push_back(
+            run_selector(study, selector, size, seed + static_cast<std::uint64_t>(k), train_groups, progress_bar()));
         if (!output.empty()) write_runs(output / "runs.csv", results, study.scenes());  // hours of work survive an end
       }
   clear_progress();
@@ -90,6 +97,7 @@ void CompareSelectorsCommand::run() const {
   report["mesh"] = mesh;
   report["description"] = text;
   report["options"] = problem_json(*this, options, body);
+  report["options"]["train_groups"] = train_groups ? Json(*train_groups) : Json();
   Json scene_list = Json::array();
   for (std::size_t k = 0; k < study.scenes().size(); ++k)
     scene_list.push_back(

@@ -8,8 +8,9 @@ namespace supple {
 struct CompareSelectorsCommand : ProblemOptions {
   std::vector<std::string> selectors{"nn-sp", "nn-htp", "greedy", "batched-greedy", "ecm", "random"};
   std::vector<Index> sizes{50, 100, 150, 250};
-  Index runs = 3;             ///< seeds for each selector and size
-  bool trajectories = false;  ///< compare pulled motions, too
+  Index runs = 3;                     ///< seeds for each selector and size
+  std::optional<Index> train_groups;  ///< poses that "greedy" compares components on; none: all
+  bool trajectories = false;          ///< compare pulled motions, too
 
   int threads = 0;
   std::filesystem::path output, json;

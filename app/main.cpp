@@ -318,6 +318,12 @@ CLI::App& add_compare_selectors(CLI::App& app, CompareSelectorsCommand& c) {
       ->type_name("N")
       ->group(comparison);
   compare
+      .add_option("--train-groups", c.train_groups,
+                  "Poses that 'greedy' compares components on, anew in each step [all; An et al.: 10]")
+      ->type_name("N")
+      ->check(whole_number())
+      ->group(comparison);
+  compare
       .add_flag("--trajectories", c.trajectories,
                 "Compare pulled motions, too; their reference evaluates every component, which takes a minute")
       ->group(comparison);

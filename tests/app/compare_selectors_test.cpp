@@ -56,6 +56,18 @@ TEST_F(CompareSelectorsTest, RunsEveryOtherSelectorAndTheCeilingAtItsOwnSize) {
   for (const json& run : report["runs"]) EXPECT_GE(run["training_error"], all["training_error"]);
 }
 
+TEST_F(CompareSelectorsTest, TrainsGreedyOnSubsetsOfPoses) {
+  const auto error = [&](const Arguments& more) {
+    Arguments arguments = small({"--selectors", "greedy", "--sizes", "30", "--runs", "1"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return report(arguments)["runs"][0]["training_error"].get<double>();
+  };
+  const double all = error({}), some = error({"--train-groups", "3"});
+  EXPECT_NE(all, some);
+  EXPECT_LT(some, 1);
+  EXPECT_EQ(all, error({"--train-groups", "20"}));
+}
+
 TEST_F(CompareSelectorsTest, CountsGaussPointsOfHexahedra) {
   Arguments arguments = small({"--components", "gauss-points", "--selectors", "nn-sp", "--sizes", "20", "--runs", "1"});
   arguments[1] = "hexbox:6x2x2";
@@ -69,6 +81,7 @@ TEST_F(CompareSelectorsTest, RefusesWhatItCannotRun) {
   expect_refusal(small({"--sizes", "20,1000"}), {"--sizes", "1000"});
   expect_refusal(small({"--sizes", "0"}), {"--sizes"});
   expect_refusal(small({"--runs", "0"}), {"--runs"});
+  expect_refusal(small({"--selectors", "nn-sp", "--train-groups", "5"}), {"--train-groups", "greedy"});
   Arguments large = small({"--selectors", "all"});
   large[1] = "bar:20x20x20";
   expect_refusal(large, {"48000 tets", "at most 5000"});
