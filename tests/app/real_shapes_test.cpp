@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <ostream>
 
 namespace supple::test {
 
@@ -15,6 +16,8 @@ using nlohmann::json;
 struct Shape {
   std::string name, mesh;
   json root, hand, move;  // handles, and the motion of the second
+
+  friend void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.mesh; }
 };
 
 /// A shape of Botsch & Sorkine 2008 with its own handles: nodes of label 0 stay, those of label 2 move rigidly.
