@@ -239,6 +239,17 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
   reduce.add_option("--selector", c.selector, "How they are chosen")
       ->check(CLI::IsMember(known_selectors()))
       ->group(method);
+  reduce
+      .add_option("--candidates", c.candidates,
+                  "Components that may be chosen beside --must-keep, one index a line, from 0 [all]")
+      ->type_name("FILE")
+      ->group(method);
+  reduce.add_option("--must-keep", c.must_keep, "Components that every choice has, unless their weight would be 0")
+      ->type_name("FILE")
+      ->group(method);
+  reduce.add_option("--warm-start", c.warm_start, "Earlier model of this mesh whose selection is to be improved")
+      ->type_name("MODEL")
+      ->group(method);
   add_threads(reduce, c.threads);
   reduce.footer(material_help() + "\nBuilt-in meshes:\n" + std::string(builtin_mesh_help) +
                 std::string(builtin_surface_help) +

@@ -7,6 +7,7 @@
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
 #include <core/version.hpp>
+#include <io/index_file.hpp>
 #include <io/plot.hpp>
 
 #include <algorithm>
@@ -18,6 +19,17 @@ namespace {
 
 constexpr Index largest_search = 1000;  // points, if only a target error is given
 
+/// What an earlier model of the same object has selected.
+Selection selection_of(const std::filesystem::path& path, const Body& body, Index num_components) {
+  const ReducedModel model = load_model(path);
+  const Index m = with_force_model(model.body, [](const auto& force) { return force->num_components(); });
+  if (m != num_components || component_name(model.body) != component_name(body))
+    throw InputError(path.string() + ": has " + std::to_string(m) + " " + std::string(component_name(model.body)) +
+                     ", expected " + std::to_string(num_components) + " " + std::string(component_name(body)) +
+                     " as the mesh");
+  return {.indices = model.indices, .weights = model.weights, .report = {}};
+}
+
 ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const Body& body) {
   ReduceOptions options = reduce_options(command, named, body);
   if (command.target_error) {
@@ -26,6 +38,13 @@ ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const
   }
   if (command.points) options.points = *command.points;
   if (command.selector) options.selector = *command.selector;
+  const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
+  if (!command.candidates.empty()) options.candidates = read_indices(command.candidates, "component", m);
+  if (!command.must_keep.empty()) options.must_keep = read_indices(command.must_keep, "component", m);
+  if (static_cast<Index>(options.must_keep.size()) > options.points)
+    throw InputError(command.must_keep.string() + ": names " + std::to_string(options.must_keep.size()) +
+                     " components, expected at most --points " + std::to_string(options.points));
+  if (!command.warm_start.empty()) options.warm_start = selection_of(command.warm_start, body, m);
   if (options.selector == "all" && !command.points) options.points = num_components_to_weight(body);
   return options;
 }
@@ -36,6 +55,12 @@ Json options_json(const ReduceCommand& command, const ReduceOptions& options, co
   json["points"] = options.points;
   json["target_error"] = options.target_error;
   json["selector"] = options.selector;
+  const auto file = [&](const char* key, const std::filesystem::path& path) {
+    if (!path.empty()) json[key] = path.string();
+  };
+  file("candidates", command.candidates);
+  file("must_keep", command.must_keep);
+  file("warm_start", command.warm_start);
   return json;
 }
 

@@ -11,6 +11,7 @@ struct ReduceCommand : ProblemOptions {
   std::optional<Index> points;
   std::optional<double> target_error;
   std::optional<std::string> selector;
+  std::filesystem::path candidates, must_keep, warm_start;  ///< lists of components, a model; empty: none
 
   int threads = 0;
   std::filesystem::path json, picture, plots;  ///< empty: none

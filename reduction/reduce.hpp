@@ -24,10 +24,13 @@ struct ReduceOptions {
   PoseOptions poses = {};             ///< training poses
   ForceNorm norm = ForceNorm::Stiffness;
   Matrix given_poses = {};  ///< d × T, instead of random ones; or 3n × T displacements, projected to the subspace
-  std::string selector = "nn-sp";  ///< see known_selectors()
-  Index points = 150;              ///< s, largest number of components
-  double target_error = 0;         ///< if positive: as few components as reach this training error
-  Index held_out_poses = 100;      ///< random ones at each of three amplitudes; 0: measure nothing held out
+  std::string selector = "nn-sp";      ///< see known_selectors()
+  Index points = 150;                  ///< s, largest number of components
+  double target_error = 0;             ///< if positive: as few components as reach this training error
+  std::vector<Index> candidates = {};  ///< components that may be selected beside must_keep; empty: all
+  std::vector<Index> must_keep = {};   ///< components that every selection has, unless their weight would be 0
+  Selection warm_start = {};           ///< an earlier selection to improve, such as that of a model to update
+  Index held_out_poses = 100;          ///< random ones at each of three amplitudes; 0: measure nothing held out
   std::uint64_t seed = 1;
 
   SubspaceChoice subspace_choice() const {

@@ -170,6 +170,9 @@ WorkingComponents select_components(const Training<Model, S>& training, const Se
   ReduceReport& report = stage.report();
   SelectionRequest request(std::min<Index>(options.points, training.fitting.cols()));
   request.target_error = options.target_error;
+  request.candidates = options.candidates;
+  request.must_keep = options.must_keep;
+  request.warm_start = options.warm_start;
   request.progress = stage.progress();
   if (!training.held_out.empty())
     request.validate = [&](const std::vector<Index>& indices, VectorIn weights) {

@@ -99,6 +99,30 @@ TEST_F(ReduceCommandTest, TakesRecipesAndWhatOverridesThem) {
   EXPECT_EQ(usual["omega_exponent"], 2);
 }
 
+TEST_F(ReduceCommandTest, UpdatesAnEarlierSelectionAmongCandidates) {
+  const json first = report(small({"--selector", "nn-sp"}));
+  Arguments again = small({"--warm-start", "bar.supple"});
+  again[3] = "again.supple";
+  for (const char* selector : {"nn-sp", "nn-omp", "ecm"}) {
+    Arguments job = again;
+    job.insert(job.end(), {"--selector", selector});
+    EXPECT_LE(report(job)["training_error"], first["training_error"].get<double>() * (1 + 1e-9)) << selector;
+  }
+  std::string some, kept;
+  for (int k = 0; k < 192; k += 3) some += std::to_string(k) + "\n";
+  write("some.txt", some);
+  write("kept.txt", "1 # no candidate\n");
+  EXPECT_LT(report(small({"--candidates", "some.txt", "--must-keep", "kept.txt"}))["training_error"], 0.5);
+  for (const json& component : report({"info", "bar.supple"})["indices"])
+    EXPECT_TRUE(component == 1 || component.get<int>() % 3 == 0) << component;
+  expect_refusal(small({"--warm-start", "none.supple"}), {"none.supple"});
+  Arguments other = again;
+  other[1] = "bar:4x2x2";
+  expect_refusal(other, {"bar.supple", "192 tets", "expected 96 tets"});
+  write("bad.txt", "192\n");
+  expect_refusal(small({"--must-keep", "bad.txt"}), {"bad.txt:1", "component 192"});
+}
+
 TEST_F(ReduceCommandTest, UnderstandsUnits) {
   const json a = report(small({"--young", "0.2 MPa", "--density", "1.1 g/m^3"}));
   const json b = report(small({"--young", "2e5", "--density", "1.1e-3"}));
