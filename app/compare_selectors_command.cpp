@@ -57,13 +57,14 @@ void CompareSelectorsCommand::run() const {
   const NamedMesh named = load_mesh(mesh);
   const Body body = load_body(*this, named);
   const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
-  for (const Index size : sizes)
-    if (size < 1 || size > m)
-      throw InputError("--sizes holds " + std::to_string(size) + ", expected 1 to the number of " +
-                       std::string(component_name(body)) + ", " + std::to_string(m));
-  if (std::ranges::find(selectors, "all") != selectors.end()) (void)num_components_to_weight(body);
-  const OutputFolder folder(output);
+  for (const std::string& selector : selectors)
+    for (const Index size : sizes)
+      if (selector != "all" && (size < 1 || size > m))
+        throw InputError("--sizes holds " + std::to_string(size) + ", expected 1 to the number of " +
+                         std::string(component_name(body)) + ", " + std::to_string(m));
   const ReduceOptions options = reduce_options(*this, named, body);
+  if (std::ranges::find(selectors, "all") != selectors.end()) (void)num_components_to_weight(body, options);
+  const OutputFolder folder(output);
   std::vector<PullScene> scenes;
   if (trajectories)
     scenes = {{.name = "pull"}, {.name = "ramped pull", .ramp = 60}, {.name = "damped pull", .damping = 0.05}};

@@ -67,8 +67,9 @@ EditScene read_edit_scene(const std::filesystem::path& path, const Body& body) {
   scene.seed = static_cast<std::uint64_t>(file.integer_or("seed", 1, non_negative));
   for (const JsonFields& fields : file.objects("handles")) {
     scene.handles.push_back(read_handle(fields, path.parent_path(), nodes));
-    const std::vector<Index>& held = fixed_nodes(body);
-    if (std::ranges::all_of(scene.handles.back().nodes, [&](Index v) { return std::ranges::binary_search(held, v); }))
+    std::erase_if(scene.handles.back().nodes,
+                  [&](Index v) { return std::ranges::binary_search(fixed_nodes(body), v); });
+    if (scene.handles.back().nodes.empty())
       fields.fail("name", "is '" + scene.handles.back().name + "', all of whose nodes the model holds fixed");
     for (std::size_t k = 0; k + 1 < scene.handles.size(); ++k)
       if (scene.handles[k].name == scene.handles.back().name) fields.fail("name", "is that of an earlier handle, too");

@@ -1,18 +1,21 @@
 #pragma once
 /// \file Ctrl-C ends the command at once, but never in the middle of a file.
 
+#include <filesystem>
 #include <mutex>
 
 namespace supple {
 
-/// From now on a thread of its own waits for SIGINT, SIGTERM and SIGHUP. Call it before any other thread
-/// starts.
+/// From now on SIGINT, SIGTERM and SIGHUP are passed to a thread of its own, which ends the process when no ExitGuard
+/// lives, whatever thread they reach: libraries may have started some before main().
 void watch_for_signals();
 
 /// While one lives, signals wait: hold it from opening a file to its last byte.
 class [[nodiscard]] ExitGuard {
  public:
   ExitGuard();
+  /// For one file; a stream, which may take forever and holds nothing to lose, is not guarded.
+  explicit ExitGuard(const std::filesystem::path& file);
 
  private:
   std::unique_lock<std::recursive_mutex> lock_;

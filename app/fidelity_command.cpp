@@ -129,7 +129,7 @@ std::vector<Shape> shapes_of(const Body& body, const EditScene& edits, const Red
     const auto in_subspace = [&](const std::string& name, auto&& visit) {
       SubspaceChoice choice = options.subspace_choice();
       choice.name = name;
-      if (name.find('+') == std::string::npos) choice.dimension = d;
+      choice.dimension = parts_of_subspace(name).size() == 1 ? d : 0;  // a sum has what its parts have
       if (name == "derivatives") choice.modes = modes_to_differentiate(choice.modes, d);
       with_subspace(*system, choice, progress, quiet, visit);
     };
@@ -239,6 +239,9 @@ void FidelityCommand::run() const {
   // snapshots are read if some subspace is made of them
   problem.subspace = std::ranges::any_of(subspaces, names_pca) ? "pca" : "extended";
   const ReduceOptions options = reduce_options(problem, named, body);
+  if (const Index unknowns = 3 * num_nodes(body); options.dimension > unknowns)
+    throw InputError("--dimension is " + std::to_string(options.dimension) + ", expected at most the " +
+                     std::to_string(unknowns) + " unknowns of the mesh");
   const OutputFolder folder(output);
 
   Json report{{"command", "fidelity"}, {"version", SUPPLE_VERSION}, {"mesh", mesh}};
@@ -255,14 +258,13 @@ void FidelityCommand::run() const {
     clear_progress();
     text += (k == 0 ? "" : "\n") + ("Shapes of " + mesh) + " under " + edits[k].description + "\n\n" +
             describe(body, shapes, scenes[k].string(), report["shapes"]);
-  }
-  report["peak_memory"] = peak_resident_memory();
-  report["seconds"] = {{"total", total.seconds()}};
-  if (!output.empty()) {
-    const ExitGuard guard;
+    report["peak_memory"] = peak_resident_memory();
+    report["seconds"] = {{"total", total.seconds()}};
+    if (output.empty()) continue;
+    const ExitGuard guard;  // each scene is kept, whatever becomes of the next
     write_file(output / "table.md", text);
+    write_json(output / "report.json", report);
   }
-  if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) std::fputs(text.c_str(), stdout);
   write_json(json, report);
 }

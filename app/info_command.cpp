@@ -204,7 +204,7 @@ void InfoCommand::run() const {
 void MeshCommand::run() const {
   require_writable(output);
   const NamedMesh named = load_mesh(source);
-  const ExitGuard guard;
+  const ExitGuard guard(output);
   std::visit(
       [&]<typename Mesh>(const Mesh& mesh) {
         if constexpr (std::same_as<Mesh, TriangleMesh>) {

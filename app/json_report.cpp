@@ -18,7 +18,7 @@ void write_json(const std::filesystem::path& path, const Json& report) {
     std::fputs(text.c_str(), stdout);
     return;
   }
-  const ExitGuard guard;
+  const ExitGuard guard(path);
   write_file(path, text);
 }
 
@@ -70,7 +70,9 @@ void require_writable(const std::filesystem::path& path) {
 OutputFolder::OutputFolder(const std::filesystem::path& folder) {
   if (folder.empty()) return;
   std::error_code error;
-  if (!std::filesystem::exists(folder, error)) made_ = folder;
+  for (std::filesystem::path path = folder; !path.empty() && !std::filesystem::exists(path, error);
+       path = path.parent_path())
+    if (path.has_filename()) made_.push_back(path);  // "run/" ends in a nameless part
   std::filesystem::create_directories(folder, error);
   if (!error && !std::filesystem::is_directory(folder, error)) error = std::make_error_code(std::errc::not_a_directory);
   if (error) throw InputError(folder.string() + ": the folder cannot be made: " + error.message());
@@ -78,7 +80,8 @@ OutputFolder::OutputFolder(const std::filesystem::path& folder) {
 
 OutputFolder::~OutputFolder() {
   std::error_code not_empty;
-  if (!made_.empty() && std::uncaught_exceptions() > exceptions_) std::filesystem::remove(made_, not_empty);
+  if (std::uncaught_exceptions() > exceptions_)
+    for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, not_empty);
 }
 
 double option_quantity(std::string_view option, std::string_view text, std::string_view unit) {

@@ -17,10 +17,10 @@ namespace supple {
 
 using Json = nlohmann::ordered_json;  ///< keeps the order of the keys; NaN is written as null
 
-/// To a file, or to stdout if the path is "-"; nothing if it is empty.
+/// To a file, or to stdout if the path is "-" or /dev/stdout; nothing if it is empty.
 void write_json(const std::filesystem::path& path, const Json& report);
 inline bool is_stdout(const std::filesystem::path& path) {
-  return path == "-";
+  return path == "-" || path == "/dev/stdout";
 }
 
 /// The name of a kind of cells or components as a key: "Gauss points" → "gauss_points".
@@ -49,10 +49,10 @@ class StageTimes {
   std::vector<std::pair<std::string, double>> seconds_;
 };
 
-/// \throws InputError if a file could not be created at this path; "-" and no path always pass.
+/// \throws InputError if a file could not be created at this path; stdout and no path always pass.
 void require_writable(const std::filesystem::path& path);
 /// The folder of a command's results, made with those above it. A failure that leaves before anything was written
-/// takes it away again.
+/// takes away again what was made.
 class OutputFolder {
  public:
   /// \param folder  empty: none.  \throws InputError naming it and the reason.
@@ -62,7 +62,7 @@ class OutputFolder {
   OutputFolder& operator=(const OutputFolder&) = delete;
 
  private:
-  std::filesystem::path made_;
+  std::vector<std::filesystem::path> made_;  // the innermost first
   int exceptions_ = std::uncaught_exceptions();
 };
 

@@ -51,6 +51,16 @@ CLI::Validator positive_number() {
           ""};
 }
 
+CLI::Validator number_between(double low, double high) {
+  return {[low, high](std::string& text) -> std::string {
+            double value = 0;
+            return CLI::detail::lexical_cast(text, value) && value >= low && value <= high
+                       ? ""
+                       : "'" + text + "' is no number from " + shown(low) + " to " + shown(high);
+          },
+          ""};
+}
+
 /// Names of subspaces, and sums of them.
 CLI::Validator subspace_name() {
   return {[](std::string& text) -> std::string {
@@ -192,6 +202,7 @@ void add_training(CLI::App& command, ProblemOptions& c) {
   command
       .add_option("--omega-exponent", c.omega_exponent, "Poses have deviations ~ 1/omega^E in each mode [2; paper: 1]")
       ->type_name("E")
+      ->check(number_between(0, 20))
       ->group(method);
   command.add_option("--norm", c.norm, "Measure of the fitted forces [stiffness; paper: mass]")
       ->check(CLI::IsMember({"mass", "stiffness"}))
@@ -235,6 +246,7 @@ CLI::App& add_reduce(CLI::App& app, ReduceCommand& c) {
       ->group(method);
   reduce.add_option("--target-error", c.target_error, "Take as few components as reach this training error")
       ->type_name("SHARE")
+      ->check(positive_number())
       ->group(method);
   reduce.add_option("--selector", c.selector, "How they are chosen")
       ->check(CLI::IsMember(known_selectors()))
@@ -273,6 +285,12 @@ CLI::App& add_simulate(CLI::App& app, SimulateCommand& c) {
   simulate.add_option("--tolerance", c.tolerance, "Relative residual of a step [1e-6]")
       ->type_name("SHARE")
       ->check(positive_number());
+  simulate
+      .add_option(
+          "--precision", c.precision,
+          "Of the basis where components are, as kept for forces; sums are double [dense bases: single, others: "
+          "double]")
+      ->check(CLI::IsMember({"double", "single"}));
   simulate.add_option("-o,--output", c.output, "Folder for trajectory, energies, pictures and ParaView's series.pvd")
       ->type_name("DIR");
   simulate.add_option("--every", c.every, "A frame after so many steps [at most 100 frames]")->type_name("N");
@@ -451,9 +469,10 @@ CLI::App& add_fidelity(CLI::App& app, FidelityCommand& c) {
       ->expected(1)
       ->take_all();
   fidelity
-      .add_option(
-          "--subspaces", c.subspaces,
-          "Names, separated by commas; of the extended one's dimension, or of the next below that they can have")
+      .add_option("--subspaces", c.subspaces,
+                  "Names, separated by commas; of the extended one's dimension, or of the next below that they can "
+                  "have (skinning: "
+                  "at least 12); sums as 'modal+skinning' of what their parts have")
       ->delimiter(',')
       ->capture_default_str()
       ->check(subspace_name());

@@ -172,6 +172,11 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
       throw InputError(problem.materials->string() + ": a surface has no regions, so there is nothing to tell apart");
     if (!problem.parameters.empty())
       throw InputError("--parameter is for the laws of solids; a surface is a discrete shell");
+    const std::vector<Index> neighbour = neighbour_sides(surface);
+    for (Index t = 0; t < surface.num_triangles(); ++t)
+      if (std::max({neighbour[3 * t], neighbour[3 * t + 1], neighbour[3 * t + 2]}) < 0)
+        throw InputError(problem.mesh + ": triangle " + std::to_string(t) +
+                         " shares no edge with another one: a shell cannot bend or stretch there");
     const Material base = base_material(problem);
     Shell shell = isotropic_shell(surface, base.moduli, shell_thickness(problem, surface), held, base.density);
     shell.damping = damping;
@@ -209,13 +214,18 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
   return options;
 }
 
-Index num_components_to_weight(const Body& body) {
+Index num_components_to_weight(const Body& body, const ReduceOptions& options) {
   constexpr Index most = 5000;
-  const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
-  if (m > most)
-    throw InputError("the selector all weights every one of " + std::to_string(m) + " " +
+  Index count = with_force_model(body, [](const auto& model) { return model->num_components(); });
+  if (!options.candidates.empty()) {
+    std::vector<Index> eligible;
+    std::ranges::set_union(options.candidates, options.must_keep, std::back_inserter(eligible));
+    count = static_cast<Index>(eligible.size());
+  }
+  if (count > most)
+    throw InputError("the selector all weights every one of " + std::to_string(count) + " " +
                      std::string(component_name(body)) + ", which is for at most " + std::to_string(most));
-  return m;
+  return count;
 }
 
 Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, const Body& body) {

@@ -42,7 +42,7 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named);
 /// \param named  the object's mesh, which a file of poses must fit.
 ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named, const Body& body);
 /// How many components the selector "all" would weight. \throws InputError if NNLS on so many is out of reach.
-Index num_components_to_weight(const Body& body);
+Index num_components_to_weight(const Body& body, const ReduceOptions& options);
 /// What poses the problem, and nothing that differs between two runs of the same job.
 Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, const Body& body);
 

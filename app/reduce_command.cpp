@@ -27,6 +27,8 @@ Selection selection_of(const std::filesystem::path& path, const Body& body, Inde
     throw InputError(path.string() + ": has " + std::to_string(m) + " " + std::string(component_name(model.body)) +
                      ", expected " + std::to_string(num_components) + " " + std::string(component_name(body)) +
                      " as the mesh");
+  if (!has_nodes(model.body, node_positions(body)))
+    throw InputError(path.string() + ": is a model of another mesh, expected one with the same nodes");
   return {.indices = model.indices, .weights = model.weights, .report = {}};
 }
 
@@ -41,11 +43,19 @@ ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const
   const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
   if (!command.candidates.empty()) options.candidates = read_indices(command.candidates, "component", m);
   if (!command.must_keep.empty()) options.must_keep = read_indices(command.must_keep, "component", m);
+  if (!command.warm_start.empty()) options.warm_start = selection_of(command.warm_start, body, m);
+  if (options.selector == "all") {
+    const Index all = num_components_to_weight(body, options);
+    if (command.target_error)
+      throw InputError("--target-error is for selectors that take few components, not for --selector all");
+    if (command.points && *command.points < all)
+      throw InputError("--selector all takes all " + std::to_string(all) + " candidates, more than --points " +
+                       std::to_string(*command.points));
+    options.points = all;
+  }
   if (static_cast<Index>(options.must_keep.size()) > options.points)
     throw InputError(command.must_keep.string() + ": names " + std::to_string(options.must_keep.size()) +
                      " components, expected at most --points " + std::to_string(options.points));
-  if (!command.warm_start.empty()) options.warm_start = selection_of(command.warm_start, body, m);
-  if (options.selector == "all" && !command.points) options.points = num_components_to_weight(body);
   return options;
 }
 
@@ -222,7 +232,7 @@ void ReduceCommand::run() const {
 
   watch.restart();
   {
-    const ExitGuard guard;
+    const ExitGuard guard(model);
     save_model(model, result);
   }
   report.seconds.insert(report.seconds.begin(), {"read mesh", read_seconds});

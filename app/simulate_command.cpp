@@ -21,6 +21,12 @@ namespace supple {
 
 namespace {
 
+/// Single for dense bases, whose rows are too many for the caches near a core.
+RowPrecision default_precision(const ReducedModel& model) {
+  return std::holds_alternative<std::shared_ptr<const DenseBasis>>(model.subspace) ? RowPrecision::Single
+                                                                                   : RowPrecision::Double;
+}
+
 /// The scene with the command line's word on top, and all that was left open decided.
 SimulationOptions decide(const SimulateCommand& command, const ReducedModel& model, Scene& scene) {
   if (command.time) scene.duration = option_quantity("--time", *command.time, "s");
@@ -58,6 +64,12 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
   if (scene.max_iterations) options.newmark.max_iterations = *scene.max_iterations;
   if (scene.beta) options.newmark.beta = *scene.beta;
   if (scene.gamma) options.newmark.gamma = *scene.gamma;
+  if (command.full && command.precision) throw InputError("--precision is for reduced systems, not for --full");
+  if (!command.full) {
+    options.precision = default_precision(model);
+    if (command.precision)
+      options.precision = *command.precision == "single" ? RowPrecision::Single : RowPrecision::Double;
+  }
   return options;
 }
 
@@ -161,6 +173,7 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["steps"] = run.num_steps();
   json["solver"] = name_of(options.newmark.solver);
   json["tolerance"] = options.newmark.tolerance;
+  if (!command.full) json["precision"] = options.precision == RowPrecision::Single ? "single" : "double";
   json["steps_per_second"] = effort.steps_per_second;
   json["mean_iterations"] = effort.mean_iterations;
   json["most_iterations"] = effort.most_iterations;

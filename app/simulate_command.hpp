@@ -17,6 +17,7 @@ struct SimulateCommand {
   std::optional<std::string> time, step;
   std::optional<std::string> solver;
   std::optional<double> tolerance;
+  std::optional<std::string> precision;  ///< double or single; see default_precision()
   std::optional<Index> every;
   std::vector<Index> track;
   std::string frames = "surface";  ///< surface, cells (or tets) or none

@@ -3,6 +3,7 @@
 
 #include <app/scene.hpp>
 #include <core/progress.hpp>
+#include <reduction/reduced_model.hpp>
 
 #include <vector>
 
@@ -13,6 +14,7 @@ struct SimulationOptions {
   Index num_steps = 0;
   Index every = 1;  ///< a frame after so many steps
   NewmarkOptions newmark;
+  RowPrecision precision = RowPrecision::Double;  ///< of a reduced system
 };
 
 /// The state after a step, and what the step took.

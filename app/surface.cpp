@@ -43,7 +43,7 @@ Points Surface::rows(const Points& all) const {
 void write_picture(const std::filesystem::path& path, const std::vector<PictureObject>& objects,
                    PictureOptions options) {
   const Image image = draw_picture(objects, options);
-  const ExitGuard guard;
+  const ExitGuard guard(path);
   write_png(path, image);
 }
 

@@ -13,7 +13,7 @@
 
 #include "../examples/gent.hpp"
 
-namespace {
+namespace own {  // named, so that the models of these laws may be
 
 using namespace supple;
 
@@ -34,6 +34,13 @@ template <typename Real>
 struct OwnStVenantKirchhoff : StVenantKirchhoff<Real> {
   static OwnStVenantKirchhoff from(const IsotropicModuli& m) { return {StVenantKirchhoff<Real>::from(m)}; }
 };
+
+}  // namespace own
+
+namespace {
+
+using namespace supple;
+using namespace own;
 
 struct Entry {
   std::string name;

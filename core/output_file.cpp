@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <string>
@@ -14,6 +15,19 @@
 namespace supple {
 
 namespace {
+
+/// The number N if the path leads to /dev/fd/N of this process, as /dev/stderr does; else −1.
+int own_descriptor(std::filesystem::path path) {
+  std::error_code no_link;
+  const std::filesystem::path descriptors = std::filesystem::canonical("/proc/self/fd", no_link);
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(path, no_link); ++links) {
+    const std::filesystem::path folder =
+        std::filesystem::canonical(path.has_parent_path() ? path.parent_path() : ".", no_link);
+    if (folder == descriptors && !descriptors.empty()) return std::atoi(path.filename().c_str());
+    path = folder / std::filesystem::read_symlink(path, no_link);
+  }
+  return -1;
+}
 
 std::filesystem::path follow_links(const std::filesystem::path& path) {
   std::error_code no_link;
@@ -26,7 +40,7 @@ std::filesystem::path follow_links(const std::filesystem::path& path) {
 bool is_stream(const std::filesystem::path& path) {
   std::error_code unknown;
   const std::filesystem::file_status status = std::filesystem::status(path, unknown);
-  return exists(status) && !is_regular_file(status) && !is_directory(status);
+  return exists(status) && !is_directory(status) && (!is_regular_file(status) || own_descriptor(path) >= 0);
 }
 
 OutputFile::OutputFile(const std::filesystem::path& path) : path_(follow_links(path)) {
@@ -34,7 +48,9 @@ OutputFile::OutputFile(const std::filesystem::path& path) : path_(follow_links(p
   if (std::error_code unknown; std::filesystem::is_directory(path_, unknown))
     throw InputError(path.string() + ": cannot be written: it is a folder");
   if (is_stream(path_)) {
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    const int open_already = own_descriptor(path_);  // which goes on where others left it
+    descriptor_ =
+        open_already >= 0 ? ::fcntl(open_already, F_DUPFD_CLOEXEC, 0) : ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) fail("open");
     return;
   }

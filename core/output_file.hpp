@@ -9,7 +9,8 @@
 
 namespace supple {
 
-/// Whether this is a pipe, a terminal, /dev/null and the like: what takes bytes and cannot be replaced.
+/// Whether this is a pipe, a terminal, /dev/null, a descriptor of this process (/dev/stderr, even where that goes to a
+/// file) and the like: what takes bytes and must not be replaced.
 bool is_stream(const std::filesystem::path& path);
 
 /// Collects output under a temporary name in the target's folder; commit() brings it to the disk and then

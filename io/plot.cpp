@@ -75,9 +75,13 @@ Run run(std::vector<std::string> command, std::string_view input) {
   ::posix_spawn_file_actions_adddup2(&actions, ::fileno(in.get()), 0);
   ::posix_spawn_file_actions_adddup2(&actions, ::fileno(out.get()), 1);
   ::posix_spawn_file_actions_adddup2(&actions, ::fileno(messages.get()), 2);
+  posix_spawnattr_t attributes;  // a process group of its own: Ctrl-C is for the caller, who may be writing a file
+  ::posix_spawnattr_init(&attributes);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
   Run result;
   pid_t child = 0;
-  result.error = ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  result.error = ::posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
+  ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&actions);
   if (result.error == 0)
     while (::waitpid(child, &result.status, 0) < 0 && errno == EINTR) continue;

@@ -9,7 +9,7 @@ namespace supple {
 struct BfgsOptions {
   double tolerance = 1e-6;     ///< relative residual ‖g‖ / scale to reach
   Index max_iterations = 200;  ///< steps; each takes one or a few evaluations of value and gradient
-  /// After so many steps the Hessian is computed and factorised afresh, shifted if it is not definite; 0: never, as
+  /// After so many steps that are in the memory the Hessian is computed and factorised afresh, shifted if it is not definite; 0: never, as
   /// the paper does. In large motions the Hessian at rest is a poor start.
   Index refresh_after = 0;
 };

@@ -1,7 +1,7 @@
 #pragma once
 /// \file What steps tell about a Hessian.
 
-#include <core/types.hpp>
+#include <core/check.hpp>
 
 #include <limits>
 #include <vector>
@@ -15,8 +15,10 @@ class BfgsMemory {
  public:
   static constexpr Index unlimited = std::numeric_limits<Index>::max();
 
-  /// \param capacity  pairs to keep; beyond that the oldest are forgotten (Nocedal 1980).
-  explicit BfgsMemory(Index capacity = unlimited) : capacity_(capacity) {}
+  /// \param capacity  pairs to keep, at least one; beyond that the oldest are forgotten (Nocedal 1980).
+  explicit BfgsMemory(Index capacity = unlimited) : capacity_(capacity) {
+    require(capacity >= 1, "capacity is " + std::to_string(capacity) + ", expected at least 1");
+  }
 
   /// Pairs along which the gradient does not rise are left out: they would make the Hessian indefinite.
   void add(Vector s, Vector y) {

@@ -40,7 +40,7 @@ struct NewmarkOptions {
   Index max_iterations = 60;  ///< of the nonlinear solver in a step
 };
 
-/// What a step took. Not converging is reported here and the best iterate kept; the caller decides.
+/// What a step took. Not converging is reported here and the last iterate kept; the caller decides.
 struct StepReport : Report {
   Index refreshes = 0;  ///< tangents computed and factorised
 };

@@ -39,7 +39,7 @@ class BroydenMemory {
 
 struct QuasiNewtonOptions {
   double tolerance = 1e-6;    ///< relative residual ‖g‖ / scale to reach
-  Index max_iterations = 60;  ///< evaluations of the force, all together
+  Index max_iterations = 60;  ///< steps, each of one evaluation of the force, more where the Jacobian is refreshed
   /// The Jacobian is computed afresh when convergence so far predicts more than this many further iterations.
   /// About the cost of a tangent and its factorisation in evaluations of the force; lower it for violent
   /// motions.

@@ -17,7 +17,7 @@
 namespace supple {
 
 struct ReduceOptions {
-  std::string subspace = "extended";  ///< one of known_subspaces(), see SubspaceChoice
+  std::string subspace = "extended";  ///< one of known_subspaces() or a sum of some, see SubspaceChoice
   Index modes = 15;                   ///< r, rigid ones included
   Index dimension = 0;                ///< d to aim at, where the modes leave a choice
   Matrix snapshots = {};              ///< 3n × T displacements, for the subspace "pca"

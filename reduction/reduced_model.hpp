@@ -34,12 +34,13 @@ ReducedModes reduced_modes(const ReducedModel& model);
 
 /// Calls visit(system) with the ReducedSystem of the model; the system lives during the call.
 template <typename Visitor>
-decltype(auto) with_reduced_system(const ReducedModel& model, Visitor&& visit) {
+decltype(auto) with_reduced_system(const ReducedModel& model, Visitor&& visit,
+                                   RowPrecision precision = RowPrecision::Double) {
   return with_force_model(model.body, [&]<typename Model>(const std::shared_ptr<const Model>& force) -> decltype(auto) {
     return std::visit(
         [&]<typename S>(const std::shared_ptr<const S>& subspace) -> decltype(auto) {
           const ReducedSystem<Model, S> system(force, subspace, model.indices, model.weights, model.rest_stiffness,
-                                               nodal_mass(model.body));
+                                               nodal_mass(model.body), precision);
           return visit(system);
         },
         model.subspace);

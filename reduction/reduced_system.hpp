@@ -2,7 +2,7 @@
 /// \file The reduced system: selected components in a subspace, dense matrices.
 
 #include <core/check.hpp>
-#include <core/pack.hpp>
+#include <core/single_pack.hpp>
 #include <physics/dynamical_system.hpp>
 #include <physics/term_pack.hpp>
 #include <reduction/pose_sweep.hpp>
@@ -10,9 +10,15 @@
 
 #include <memory>
 #include <span>
+#include <variant>
 #include <vector>
 
 namespace supple {
+
+/// How a ReducedSystem keeps the rows of W behind its components. A dense basis of hundreds of modes is larger than the
+/// caches near a core, and Single halves what each force has to read. Rounded rows (relative 6e-8) are those of a basis
+/// close by: energy, force and tangent still agree by differentiation, so solvers reach any tolerance.
+enum class RowPrecision { Double, Single };
 
 /// The unknowns q of u = U q under the forces F̃(q) = Σ wᵢ Uᵀ fᵢ(U q) over the selected components (Eq. 4).
 /// Energy (where the model has one), force and tangent come from the same components and weights, so they agree by
@@ -35,7 +41,8 @@ class ReducedSystem {
   /// \param rest_stiffness    UᵀK(0)U, exact, d × d: what Rayleigh damping uses.
   /// \param nodal_mass        n [kg], for gravity in ℝ³.
   ReducedSystem(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace, std::span<const Index> indices,
-                VectorIn weights, Matrix rest_stiffness, const Vector& nodal_mass)
+                VectorIn weights, Matrix rest_stiffness, const Vector& nodal_mass,
+                RowPrecision precision = RowPrecision::Double)
       : subspace_(std::move(subspace)),
         mass_(Vector::Ones(subspace_->dim())),
         rest_stiffness_(std::move(rest_stiffness)) {
@@ -51,6 +58,7 @@ class ReducedSystem {
                                                          " does not exist, expected 0 to " +
                                                          std::to_string(model->num_components() - 1));
     const Index p = num_fields();
+    if (precision == RowPrecision::Single) E_ = std::vector<SinglePack>();
     for (Index first = 0; first < s; first += Pack::size) {
       const PackIndices lanes = consecutive_components(first, s);
       PackIndices components;
@@ -62,13 +70,16 @@ class ReducedSystem {
       }
       terms_.emplace_back(model, components);
       weights_.push_back(weight);
-      const std::size_t offset = E_.size();
-      E_.resize(offset + p * rows, Pack(0.0));
-      for (int k = 0; k < Pack::size; ++k) {
-        const RowMatrix E_k = component_rows(*model, *subspace_, components[k]);
-        for (Index a = 0; a < p; ++a)
-          for (int r = 0; r < rows; ++r) E_[offset + a * rows + r].set(k, E_k(r, a));
-      }
+      const auto keep_rows = [&](auto& E) {
+        const std::size_t offset = E.size();
+        E.resize(offset + p * rows);
+        for (int k = 0; k < Pack::size; ++k) {
+          const RowMatrix E_k = component_rows(*model, *subspace_, components[k]);
+          for (Index a = 0; a < p; ++a)
+            for (int r = 0; r < rows; ++r) E[offset + a * rows + r].set(k, E_k(r, a));
+        }
+      };
+      std::visit(keep_rows, E_);
     }
     gravity_ = Matrix::Zero(dim(), 3);
     if constexpr (Model::node_dim == 3) {
@@ -89,7 +100,10 @@ class ReducedSystem {
   double energy(VectorIn q) const requires PotentialModel<Model> {
     require_size("q", q.size(), dim());
     Pack sum(0.0);
-    for (std::size_t p = 0; p < terms_.size(); ++p) sum += weights_[p] * terms_[p].energy(gather(p, q.data()));
+    with_rows([&](const auto& rows_of) {
+      for (std::size_t c = 0; c < terms_.size(); ++c)
+        sum += weights_[c] * terms_[c].energy(gather(rows_of(c), q.data()));
+    });
     return sum.sum();
   }
 
@@ -98,18 +112,20 @@ class ReducedSystem {
     require_size("f", f.size(), dim());
     const Index p = num_fields();
     std::vector<Pack> sums(dim(), Pack(0.0));
-    for (std::size_t c = 0; c < terms_.size(); ++c) {
-      Local<Model::local_dofs, Pack> f_c = terms_[c].force(gather(c, q.data()));
-      for (int i = first_dof; i < Model::local_dofs; ++i) f_c[i] *= weights_[c];
-      const Pack* E = E_.data() + c * p * rows;
-      Pack* sum = sums.data();
-      for (Index a = 0; a < p; ++a, E += rows, sum += block)
-        for (int x = 0; x < block; ++x) {
-          Pack at = sum[x];
-          for (int r = 0; r < rows; ++r) at += E[r] * f_c[first_dof + r * block + x];
-          sum[x] = at;
-        }
-    }
+    with_rows([&](const auto& rows_of) {
+      for (std::size_t c = 0; c < terms_.size(); ++c) {
+        const auto* E = rows_of(c);
+        Local<Model::local_dofs, Pack> f_c = terms_[c].force(gather(E, q.data()));
+        for (int i = first_dof; i < Model::local_dofs; ++i) f_c[i] *= weights_[c];
+        Pack* sum = sums.data();
+        for (Index a = 0; a < p; ++a, E += rows, sum += block)
+          for (int x = 0; x < block; ++x) {
+            Pack at = sum[x];
+            for (int r = 0; r < rows; ++r) at += Pack(E[r]) * f_c[first_dof + r * block + x];
+            sum[x] = at;
+          }
+      }
+    });
     for (Index k = 0; k < dim(); ++k) f[k] = sums[k].sum();
   }
   Vector force(VectorIn q) const {
@@ -127,29 +143,35 @@ class ReducedSystem {
     constexpr Index lanes = rows * Pack::size;
     Matrix sums = Matrix::Zero(p, pairs * p);
     Matrix left(packs_at_once * lanes, p), right(packs_at_once * lanes, pairs * p);
-    for (Index first = 0; first < static_cast<Index>(terms_.size()); first += packs_at_once) {
-      const Index count = std::min<Index>(packs_at_once, static_cast<Index>(terms_.size()) - first);
-      for (Index c = 0; c < count; ++c) {
-        const LocalMatrix<Model::local_dofs, Pack> K_c = terms_[first + c].stiffness(gather(first + c, q.data()));
-        const Pack weight = weights_[first + c];
-        LocalMatrix<local, Pack> weighted;
-        for (int j = 0; j < local; ++j)
-          for (int i = 0; i < local; ++i) weighted(i, j) = weight * K_c(first_dof + i, first_dof + j);
-        const Pack* E = E_.data() + (first + c) * p * rows;
-        for (Index b = 0; b < p; ++b, E += rows) {
-          for (int r = 0; r < rows; ++r) E[r].store_unaligned(&left((c * rows + r) * Pack::size, b));
-          int pair = 0;
-          for (int x = 0; x < block; ++x)
-            for (int y = symmetric_tangent ? x : 0; y < block; ++y, ++pair)
-              for (int r = 0; r < rows; ++r) {
-                Pack sum(0.0);
-                for (int k = 0; k < rows; ++k) sum += weighted(r * block + x, k * block + y) * E[k];
-                sum.store_unaligned(&right((c * rows + r) * Pack::size, pair * p + b));
-              }
+    with_rows([&](const auto& rows_of) {
+      for (Index first = 0; first < static_cast<Index>(terms_.size()); first += packs_at_once) {
+        const Index count = std::min<Index>(packs_at_once, static_cast<Index>(terms_.size()) - first);
+        for (Index c = 0; c < count; ++c) {
+          const auto* E = rows_of(first + c);
+          const LocalMatrix<Model::local_dofs, Pack> K_c = terms_[first + c].stiffness(gather(E, q.data()));
+          const Pack weight = weights_[first + c];
+          LocalMatrix<local, Pack> weighted;
+          for (int j = 0; j < local; ++j)
+            for (int i = 0; i < local; ++i) weighted(i, j) = weight * K_c(first_dof + i, first_dof + j);
+          for (Index b = 0; b < p; ++b, E += rows) {
+            Local<rows, Pack> W_b;
+            for (int r = 0; r < rows; ++r) {
+              W_b[r] = E[r];
+              W_b[r].store_unaligned(&left((c * rows + r) * Pack::size, b));
+            }
+            int pair = 0;
+            for (int x = 0; x < block; ++x)
+              for (int y = symmetric_tangent ? x : 0; y < block; ++y, ++pair)
+                for (int r = 0; r < rows; ++r) {
+                  Pack sum(0.0);
+                  for (int k = 0; k < rows; ++k) sum += weighted(r * block + x, k * block + y) * W_b[k];
+                  sum.store_unaligned(&right((c * rows + r) * Pack::size, pair * p + b));
+                }
+          }
         }
+        sums.noalias() += left.topRows(count * lanes).transpose() * right.topRows(count * lanes);
       }
-      sums.noalias() += left.topRows(count * lanes).transpose() * right.topRows(count * lanes);
-    }
+    });
     K.resize(dim(), dim());
     int pair = 0;
     for (int x = 0; x < block; ++x)
@@ -187,14 +209,20 @@ class ReducedSystem {
  private:
   Index num_fields() const { return subspace_->num_fields(); }
 
-  /// Local displacements of a pack of components: its rows of W times q.
-  Local<Model::local_dofs, Pack> gather(std::size_t c, const double* q) const {
+  /// Calls loop(rows_of), where rows_of(c) points to the rows of W behind pack c, in the precision they are kept in.
+  template <typename Loop>
+  void with_rows(const Loop& loop) const {
+    std::visit([&](const auto& E) { loop([&](std::size_t c) { return E.data() + c * num_fields() * rows; }); }, E_);
+  }
+
+  /// Local displacements of a pack of components: its rows of W, E, times q.
+  template <typename Rows>
+  Local<Model::local_dofs, Pack> gather(const Rows* E, const double* q) const {
     Local<local, Pack> active = Local<local, Pack>::Constant(Pack(0.0));
     const Index p = num_fields();
-    const Pack* E = E_.data() + c * p * rows;
     for (Index a = 0; a < p; ++a, E += rows, q += block)
       for (int r = 0; r < rows; ++r)
-        for (int x = 0; x < block; ++x) active[r * block + x] += E[r] * Pack(q[x]);
+        for (int x = 0; x < block; ++x) active[r * block + x] += Pack(E[r]) * Pack(q[x]);
     Local<Model::local_dofs, Pack> u;
     for (int i = 0; i < first_dof; ++i) u[i] = Pack(0.0);
     for (int i = 0; i < local; ++i) u[first_dof + i] = active[i];
@@ -207,7 +235,8 @@ class ReducedSystem {
   Matrix gravity_;  // d × 3: Uᵀ M times a unit acceleration along each axis
   std::vector<TermPack<Model>> terms_;
   std::vector<Pack> weights_;
-  std::vector<Pack> E_;  // for each pack of components, field and row: eight entries of W
+  // for each pack of components, field and row: eight entries of W
+  std::variant<std::vector<Pack>, std::vector<SinglePack>> E_;
 };
 
 }  // namespace supple

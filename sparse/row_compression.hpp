@@ -138,9 +138,12 @@ Selection select_on_rows(const CompressedRows& compressed, const S& select, cons
   const double compressing = since.seconds();
   SelectionRun<P> run(problem, request);
   run.account(static_cast<Index>(compressed.columns.size()));
+  WorkingSet<P> working(problem);
   if (request.warm_start.size() > 0) {  // which may be better on all rows than what follows from few
-    WorkingSet<P> start = run.start();
-    run.record(start, start.fit());
+    working = run.start();
+    run.record(working, working.fit());
+    if (request.target_error > 0 && run.met(0))
+      return run.finish(working, Status::Converged, 0, "target error reached");
   }
   std::vector<Index> position(problem.cols(), -1);
   for (std::size_t k = 0; k < compressed.columns.size(); ++k) position[compressed.columns[k]] = static_cast<Index>(k);
@@ -168,7 +171,6 @@ Selection select_on_rows(const CompressedRows& compressed, const S& select, cons
     };
 
   const DenseProblem rows(compressed.A, compressed.b);
-  WorkingSet<P> working(problem);
   Selection chosen;
   std::vector<SelectionStep> steps;  // on the compressed rows
   bool lost = true;                  // met the target on the compressed rows, but not on all
@@ -183,9 +185,9 @@ Selection select_on_rows(const CompressedRows& compressed, const S& select, cons
     }
     working = WorkingSet<P>(problem);
     working.append(run.evaluate(original(chosen.indices)).block);
-    run.record(working, working.fit());
+    const double error = run.relative(run.record(working, working.fit()).norm());
     lost = chosen.report.status == Status::Converged && run.status_at_size() != Status::Converged;
-    inner.target_error *= 0.8 * request.target_error / std::max(run.error(), 1e-15);
+    inner.target_error *= 0.8 * request.target_error / std::max(error, 1e-15);
     inner.warm_start = chosen;
   }
   Selection selection = run.finish(working, lost ? Status::Stagnated : chosen.report.status, chosen.report.iterations,

@@ -99,6 +99,8 @@ class SelectionRun {
 
   double b_norm() const { return b_norm_; }
   double error() const { return error_; }  ///< of the best iterate so far
+  /// \param residual  ‖b − A w‖.
+  double relative(double residual) const { return residual > 0 ? residual / b_norm_ : 0; }
   double seconds() const { return stopwatch_.seconds(); }
   bool met(double tolerance) const { return error_ <= std::max({tolerance, request_.target_error, 1e-15}); }
 
@@ -259,8 +261,6 @@ class SelectionRun {
       throw InputError("column " + std::to_string(j) +
                        " of A has a norm that is not finite, expected finite numbers below 1e150");
   }
-
-  double relative(double residual) const { return residual > 0 ? residual / b_norm_ : 0; }
 
   // Makes `working` hold the best iterate, ascending; what has left it meanwhile is evaluated again.
   Vector restore_best(WorkingSet<P>& working) {

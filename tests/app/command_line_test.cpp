@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <csignal>
+#include <cstdlib>
+#include <sys/stat.h>
 
 namespace supple::test {
 
@@ -60,6 +62,37 @@ TEST_F(CommandLineTest, EndsOnASignalWithoutPartialFiles) {
     EXPECT_EQ(outcome.exit_code, 128 + signal);
     EXPECT_TRUE(files().empty()) << files().front();
   }
+}
+
+TEST_F(CommandLineTest, FinishesTheFileThatASignalFindsItWriting) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const Outcome outcome =
+        run_supple_until_signal_while_writing({"mesh", "bar:60x30x30", "-o", "bar.vtu"}, folder, signal);
+    EXPECT_EQ(outcome.exit_code, 128 + signal);  // by itself, not killed
+    EXPECT_EQ(files(), std::vector<std::string>{"bar.vtu"});
+    EXPECT_EQ(report({"info", "bar.vtu"})["tets"], 6 * 60 * 30 * 30);
+    std::filesystem::remove(folder / "bar.vtu");
+  }
+}
+
+TEST_F(CommandLineTest, EndsOnASignalWhileNobodyReadsItsReport) {
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  const Outcome outcome = run_supple_until_signal({"info", "bar:4x2x2", "--json", "pipe"}, folder, SIGTERM, 500);
+  EXPECT_EQ(outcome.exit_code, 128 + SIGTERM);
+}
+
+TEST_F(CommandLineTest, AddsToTheFilesItsOwnStreamsGoTo) {
+  write("log", "old\n");
+  const std::string command =
+      std::string("cd ") + folder.string() + " && " + SUPPLE_COMMAND + " info bar:4x2x2 --json ";
+  ASSERT_EQ(std::system((command + "/dev/stdout >> log").c_str()), 0);
+  EXPECT_EQ(nlohmann::json::parse(read("log").substr(4))["tets"], 96);  // and no text
+  EXPECT_EQ(read("log").substr(0, 4), "old\n");
+  write("log", "old\n");
+  ASSERT_EQ(std::system((command + "/dev/stderr 2>> log > text").c_str()), 0);
+  EXPECT_EQ(nlohmann::json::parse(read("log").substr(4))["tets"], 96);
+  EXPECT_EQ(read("log").substr(0, 4), "old\n");
+  EXPECT_THAT(read("text"), HasSubstr("bar:4x2x2"));
 }
 
 TEST_F(CommandLineTest, DescribesMeshesAndWritesThem) {

@@ -85,6 +85,7 @@ TEST_F(CompareSelectorsTest, RefusesWhatItCannotRun) {
   Arguments large = small({"--selectors", "all"});
   large[1] = "bar:20x20x20";
   expect_refusal(large, {"48000 tets", "at most 5000"});
+  EXPECT_EQ(report(small({"--selectors", "all", "--sizes", "1000"}))["runs"].size(), 1u);  // sizes are not for it
   expect_refusal(small({"--json", "no/such/report.json"}), {"no/such"});
   EXPECT_TRUE(files().empty()) << files().front();
 }

@@ -143,6 +143,15 @@ TEST_F(EditCommandTest, RefusesAHandleThatIsHeldAndTakesAnEmptyFolderAway) {
   EXPECT_FALSE(std::filesystem::exists(folder / "run"));
 }
 
+TEST_F(EditCommandTest, SamplesOnlyNodesThatCanMove) {
+  reduce({"--fix", "x<=10%"});
+  for (int seed = 1; seed <= 8; ++seed) {  // 9 of the 18 nodes below 20 % are held
+    write("scene.json", R"({"seed": )" + std::to_string(seed) + R"(, "handles": [{"name": "root", "nodes": "x<20%",
+      "samples": 1}], "edits": [{"moves": [{"handle": "root", "translation": [0, 0, 0.01]}]}]})");
+    EXPECT_GT(report({"edit", "bar.supple", "--scene", "scene.json"})["elastic_energy"], 0.0) << seed;
+  }
+}
+
 TEST_F(EditCommandTest, EditsInEverySubspace) {
   write("bend.json", bend);
   reduce();
@@ -220,6 +229,21 @@ TEST_F(EditCommandTest, ComparesSubspacesByTheirShapes) {
     EXPECT_EQ(several["shapes"][k]["rms_over_diagonal"], several["shapes"][k + 3]["rms_over_diagonal"]);
   EXPECT_GT(several["shapes"][2]["dimension"], several["shapes"][1]["dimension"]);
   EXPECT_TRUE(std::filesystem::exists(folder / "several/shapes-2.png"));
+  // a failure keeps the scenes before it
+  write("torn.json", R"({"handles": [{"name": "tip", "nodes": "x>99%"}],
+    "edits": [{"moves": [{"handle": "tip", "translation": [1e200, 0, 0]}]}]})");
+  expect_refusal({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--scene", "torn.json", "--modes", "8",
+                  "--subspaces", "extended", "-o", "torn"},
+                 {"not finite"}, 1);
+  EXPECT_EQ(json::parse(read("torn/report.json"))["shapes"].size(), 2u);
+  EXPECT_THAT(read("torn/table.md"), HasSubstr("| extended |"));
+  // a sum has the dimension of its parts
+  const json sum = this->report({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--modes", "8", "--dimension", "30",
+                                 "--subspaces", "skinning,modal+skinning"});
+  EXPECT_EQ(sum["shapes"][1]["dimension"], 24);
+  EXPECT_EQ(sum["shapes"][2]["dimension"], several["shapes"][2]["dimension"]);
+  expect_refusal({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--dimension", "9223372036854775807"},
+                 {"--dimension", "243"});
   expect_refusal({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--poses", "5"}, {"--poses"});
   expect_refusal({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--subspaces", "pca"}, {"--snapshots"});
   expect_refusal({"fidelity", "bar:8x2x2", "--scene", "bend.json", "--snapshots", "bent"}, {"pca"});

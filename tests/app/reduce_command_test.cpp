@@ -119,8 +119,31 @@ TEST_F(ReduceCommandTest, UpdatesAnEarlierSelectionAmongCandidates) {
   Arguments other = again;
   other[1] = "bar:4x2x2";
   expect_refusal(other, {"bar.supple", "192 tets", "expected 96 tets"});
+  other[1] = "bar:2x8x2";  // as many tets, in other places
+  expect_refusal(other, {"bar.supple", "another mesh"});
   write("bad.txt", "192\n");
   expect_refusal(small({"--must-keep", "bad.txt"}), {"bad.txt:1", "component 192"});
+}
+
+TEST_F(ReduceCommandTest, WeightsAllCandidatesByNnls) {
+  Arguments all = small({"--selector", "all"});
+  all.erase(all.begin() + 10, all.begin() + 12);  // without --points
+  EXPECT_EQ(report(all)["options"]["points"], 192);
+  std::string some, kept;
+  for (int k = 0; k < 160; ++k) kept += std::to_string(k) + "\n";
+  for (int k = 0; k < 192; k += 3) some += std::to_string(k) + "\n";
+  write("some.txt", some);
+  write("kept.txt", kept);
+  all.insert(all.end(), {"--must-keep", "kept.txt"});
+  EXPECT_EQ(report(all)["options"]["points"], 192);
+  all.insert(all.end(), {"--candidates", "some.txt"});
+  EXPECT_EQ(report(all)["options"]["points"], 160 + 10);  // 162, 165 … 189
+  Arguments large = all;
+  large[1] = "bar:20x20x20";
+  EXPECT_EQ(report(large)["options"]["points"], 170);
+  all.insert(all.end(), {"--target-error", "0.1"});
+  expect_refusal(all, {"--target-error", "all"});
+  expect_refusal(small({"--selector", "all"}), {"192", "--points 30"});
 }
 
 TEST_F(ReduceCommandTest, UnderstandsUnits) {
@@ -290,9 +313,14 @@ TEST_F(ReduceCommandTest, RefusesBadInputInOneLineAndLeavesNothing) {
   refuse(small({"--materials", "none.json"}), {"none.json"});
   refuse(small({"--json", "no/such/report.json"}), {"no/such"});
   refuse(small({"--damping-alpha", "-1"}), {"damping"});
+  for (const char* target : {"0", "nan", "-1"}) refuse(small({"--target-error", target}), {"--target-error", target});
+  for (const char* exponent : {"inf", "nan", "1e300"}) refuse(small({"--omega-exponent", exponent}), {exponent});
   refuse({"reduce", "bar:8x2x2", "-o", "no/such/bar.supple"}, {"no/such"});
+  write("lone.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  refuse({"reduce", "lone.off", "-o", "m"}, {"lone.off", "triangle 0"});
+  std::filesystem::remove(folder / "lone.off");
   refuse({"reduce", "bar:8x2x2"}, {"--output"});
-  refuse({"reduce", "bar:2x1x1", "-o", "m", "--modes", "1000"}, {"1000"});
+  refuse({"reduce", "bar:2x1x1", "-o", "m", "--modes", "1000", "--plots", "p1/p2/p3"}, {"1000"});
   EXPECT_TRUE(files().empty()) << files().front();
 }
 

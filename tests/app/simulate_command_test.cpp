@@ -69,6 +69,25 @@ TEST_F(SimulateCommandTest, WritesWhatItReports) {
   EXPECT_GT(read_png(folder / "run/energy.png").width, 300);
 }
 
+TEST_F(SimulateCommandTest, KeepsRowsOfDenseBasesInSinglePrecisionUnlessTold) {
+  reduce_bar();
+  EXPECT_EQ(report({"simulate", "bar.supple", "-o", "run"})["precision"], "double");
+  EXPECT_EQ(report({"simulate", "bar.supple", "--precision", "single", "-o", "run"})["precision"], "single");
+  EXPECT_FALSE(report({"simulate", "bar.supple", "--full", "--time", "0.01", "-o", "run"}).contains("precision"));
+  reduce_bar({"--subspace", "modal"});
+  double reach[2];
+  for (const bool is_double : {false, true}) {
+    Arguments arguments{"simulate", "bar.supple", "--tolerance", "1e-10", "--track", "80", "-o", "run"};
+    if (is_double) arguments.insert(arguments.end(), {"--precision", "double"});
+    const json report = this->report(arguments);
+    EXPECT_EQ(report["precision"], is_double ? "double" : "single");
+    EXPECT_EQ(report["missed_steps"], 0);
+    reach[is_double] = report["tracked"][0]["largest_displacement"];
+  }
+  EXPECT_NE(reach[0], reach[1]);
+  EXPECT_NEAR(reach[0], reach[1], 1e-5 * reach[1]);
+}
+
 TEST_F(SimulateCommandTest, ConservesEnergyAsLoadsGiveIt) {
   reduce_bar();
   for (const Arguments& how : {Arguments{}, Arguments{"--full"}}) {
@@ -222,6 +241,8 @@ TEST_F(SimulateCommandTest, RefusesBadScenesInOneLineAndLeavesNothing) {
   expect_refusal({"simulate", "bar.supple", "--track", "-1", "-o", "run"}, {"track"});
   expect_refusal({"simulate", "bar.supple", "--every", "0", "-o", "run"}, {"every"});
   expect_refusal({"simulate", "bar.supple", "--full", "--solver", "broyden", "-o", "run"}, {"newton"});
+  expect_refusal({"simulate", "bar.supple", "--precision", "half", "-o", "run"}, {"--precision", "single"});
+  expect_refusal({"simulate", "bar.supple", "--full", "--precision", "single", "-o", "run"}, {"--precision"});
   expect_refusal({"simulate", "bar.supple", "-o", "bar.supple"}, {"bar.supple"});
   EXPECT_FALSE(std::filesystem::exists(folder / "run"));
 }

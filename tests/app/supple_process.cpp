@@ -2,9 +2,11 @@
 #include <tests/app/supple_process.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <fcntl.h>
 #include <fstream>
+#include <functional>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -21,8 +23,9 @@ std::string drain(int descriptor) {
   return text;
 }
 
-Outcome run(const Arguments& arguments, const std::filesystem::path& folder, bool terminal, int signal,
-            int milliseconds) {
+/// \param wait  called before the signal is sent.
+Outcome run(const Arguments& arguments, const std::filesystem::path& folder, bool terminal, int signal = 0,
+            const std::function<void()>& wait = {}) {
   int out[2], err[2];
   if (pipe(out) != 0) throw std::runtime_error("no pipe");
   if (terminal) {
@@ -50,28 +53,42 @@ Outcome run(const Arguments& arguments, const std::filesystem::path& folder, boo
   Outcome outcome;
   std::thread reader([&] { outcome.err = drain(err[0]); });
   if (signal != 0) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    wait();
     kill(child, signal);
   }
   outcome.out = drain(out[0]);
   int status = 0;
   waitpid(child, &status, 0);
   reader.join();
-  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   return outcome;
 }
 
 }  // namespace
 
 Outcome run_supple(const Arguments& arguments, const std::filesystem::path& folder) {
-  return run(arguments, folder, false, 0, 0);
+  return run(arguments, folder, false);
 }
 Outcome run_supple_on_terminal(const Arguments& arguments, const std::filesystem::path& folder) {
-  return run(arguments, folder, true, 0, 0);
+  return run(arguments, folder, true);
 }
 Outcome run_supple_until_signal(const Arguments& arguments, const std::filesystem::path& folder, int signal,
                                 int milliseconds) {
-  return run(arguments, folder, false, signal, milliseconds);
+  return run(arguments, folder, false, signal,
+             [&] { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); });
+}
+Outcome run_supple_until_signal_while_writing(const Arguments& arguments, const std::filesystem::path& folder,
+                                              int signal) {
+  const auto is_writing = [&] {
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.path().extension() == ".tmp") return true;
+    return false;
+  };
+  const auto start = std::chrono::steady_clock::now();
+  return run(arguments, folder, false, signal, [&] {
+    while (!is_writing() && std::chrono::steady_clock::now() - start < std::chrono::seconds(60))
+      std::this_thread::yield();
+  });
 }
 
 SuppleProcess::SuppleProcess() {

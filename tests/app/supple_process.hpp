@@ -13,7 +13,7 @@ namespace supple::test {
 using Arguments = std::vector<std::string>;
 
 struct Outcome {
-  int exit_code = -1;  ///< 128 + signal if a signal ended it
+  int exit_code = -1;  ///< −signal if a signal killed it
   std::string out, err;
 
   nlohmann::json json() const { return nlohmann::json::parse(out); }
@@ -26,6 +26,9 @@ Outcome run_supple_on_terminal(const Arguments& arguments, const std::filesystem
 /// The same, sent `signal` after so many milliseconds.
 Outcome run_supple_until_signal(const Arguments& arguments, const std::filesystem::path& folder, int signal,
                                 int milliseconds);
+/// The same, sent `signal` as soon as it has opened a file to write.
+Outcome run_supple_until_signal_while_writing(const Arguments& arguments, const std::filesystem::path& folder,
+                                              int signal);
 
 /// A fresh folder for each test, removed afterwards.
 class SuppleProcess : public testing::Test {

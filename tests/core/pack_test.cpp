@@ -1,5 +1,6 @@
 #include <core/pack.hpp>
 #include <core/random.hpp>
+#include <core/single_pack.hpp>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -142,6 +143,19 @@ TEST(Pack, WorksAsTheScalarOfEigenMatrices) {
     const Vector3<double> x_k = x.unaryExpr(lane), y_k = y.unaryExpr(lane);
     EXPECT_LT((y_k - (F_k.transpose() * (F_k * x_k) + 0.5 * x_k)).norm(), 1e-14);
     EXPECT_NEAR(determinant[k], F_k.determinant(), 1e-14);
+  }
+}
+
+TEST(SinglePack, RoundsToSinglePrecisionOnce) {
+  static_assert(sizeof(SinglePack) == 32 && alignof(SinglePack) == 32);
+  Random random(3);
+  const Pack a = random_pack(random, -2, 2);
+  SinglePack rounded;
+  for (int k = 0; k < Pack::size; ++k) rounded.set(k, a[k]);
+  const Pack b = rounded;
+  for (int k = 0; k < Pack::size; ++k) {
+    EXPECT_EQ(b[k], static_cast<double>(static_cast<float>(a[k])));
+    EXPECT_NEAR(b[k], a[k], 6e-8 * std::abs(a[k]));
   }
 }
 

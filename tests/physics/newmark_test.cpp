@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <optional>
 
 namespace supple::test {
 namespace {
@@ -274,6 +275,27 @@ TEST(Newmark, SolversTakeTheSameTrajectory) {
     EXPECT_TRUE(is_near(other.u, newton.u, 1e-6));
     EXPECT_TRUE(is_near(other.v, newton.v, 1e-4));
   }
+}
+
+TEST(Newmark, BfgsLearnsFromStepToStep) {
+  const StvkSystem system = bar();
+  const AffineLoad<SparseMatrix> load = system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {}});
+  const auto iterations = [&](bool forgetful) {
+    NewmarkOptions options{.tolerance = 1e-9};
+    options.solver = NonlinearSolver::Bfgs;
+    State state = swinging(system);
+    std::optional<Newmark<StvkSystem>> newmark;
+    Index sum = 0;
+    for (int k = 0; k < 20; ++k) {
+      if (!newmark || forgetful) newmark.emplace(system, 0.01, options);
+      newmark->balance(load, state);
+      const StepReport report = newmark->step(load, state);
+      EXPECT_EQ(report.status, Status::Converged);
+      sum += report.iterations;
+    }
+    return sum;
+  };
+  EXPECT_LT(iterations(false), 0.9 * static_cast<double>(iterations(true)));
 }
 
 // The first iterates leave far; there residuals relative to the forces are all about 1 and say nothing.

@@ -212,6 +212,7 @@ TEST(BfgsMemory, ForgetsTheOldestAndLeavesOutWhatIsNotConvex) {
   EXPECT_TRUE(is_same(inverse_of(limited, d), inverse_of(last, d)));
   limited.clear();
   EXPECT_EQ(limited.size(), 0);
+  EXPECT_THROW(BfgsMemory(0), std::invalid_argument);
   EXPECT_TRUE(is_near(inverse_of(limited, d), 2 * Matrix::Identity(d, d), 1e-15));
 }
 

@@ -119,6 +119,32 @@ TEST(ReducedSystem, SumsWeightedComponents) {
   }
 }
 
+TEST(ReducedSystem, WithRoundedRowsIsThatOfABasisCloseBy) {
+  const StvkBar system = clamped_bar();
+  const Index m = system.model().num_components();
+  const auto basis = std::make_shared<const DenseBasis>(ModalBasis{.num_modes = 12}(system));
+  const auto with = [&](RowPrecision precision) {
+    return ReducedSystem(system.shared_model(), basis, all_components(m), Vector::Ones(m),
+                         project_stiffness(*basis, system), system.nodal_mass(), precision);
+  };
+  const auto exact = with(RowPrecision::Double), rounded = with(RowPrecision::Single);
+  const double epsilon = 1e-4;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const Vector q = random_vector(basis->dim(), 0.1, seed), d = random_vector(basis->dim(), 0.1, seed + 100);
+    const Vector f = rounded.force(q);
+    const Matrix K = rounded.stiffness(q);
+    EXPECT_TRUE(is_near(f, exact.force(q), 1e-6 * K.norm() * q.norm()));
+    EXPECT_FALSE(is_near(f, exact.force(q), 1e-12 * K.norm() * q.norm()));  // it does round
+    EXPECT_NEAR(rounded.energy(q), exact.energy(q), 1e-6 * exact.energy(q));
+    EXPECT_TRUE(is_near(K, exact.stiffness(q), 1e-6 * K.norm()));
+    // its own derivatives far below the rounding of the rows: central differences err by ε² and 1e-16 / ε
+    const double slope = (rounded.energy(q + epsilon * d) - rounded.energy(q - epsilon * d)) / (2 * epsilon);
+    EXPECT_NEAR(f.dot(d), slope, 3e-8 * f.norm() * d.norm());
+    const Vector change = (rounded.force(q + epsilon * d) - rounded.force(q - epsilon * d)) / (2 * epsilon);
+    EXPECT_TRUE(is_near(K * d, change, 3e-8 * K.norm() * d.norm()));
+  }
+}
+
 TEST(ReducedSystem, GivesInvertedMooneyRivlinInfiniteEnergyNotNaN) {
   const TetMesh mesh = bar_mesh();
   const FullSystem<TetElasticity<MooneyRivlin>> system(

@@ -158,6 +158,7 @@ TEST(Niht, RecoversAPlantedSignedSolution) {
 
 TEST(Niht, DecreasesTheErrorMonotonicallyWithNormalizedSteps) {
   const Selection c = Niht{.max_iterations = 50}(cube(), 20);
+  ASSERT_GT(c.report.history.size(), 10u);
   for (std::size_t i = 1; i < c.report.history.size(); ++i)
     EXPECT_LE(c.report.history[i].training_error, c.report.history[i - 1].training_error * (1 + 1e-12));
 }
