@@ -216,6 +216,13 @@ void add_training(CLI::App& command, ProblemOptions& c) {
       ->type_name("FILE")
       ->group(method);
   command
+      .add_option(
+          "--equilibria", c.equilibria,
+          "Further poses, in equilibrium, where errors count as displacements [a third of the poses; shells, paper: 0]")
+      ->check(whole_number(0))
+      ->type_name("N")
+      ->group(method);
+  command
       .add_option("--held-out", c.held_out,
                   "Fresh poses to measure the error on, at each of three amplitudes; 0: none [100]")
       ->type_name("N")

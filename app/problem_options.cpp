@@ -205,6 +205,7 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
   if (problem.modes) options.modes = *problem.modes;
   if (problem.poses) options.poses.count = *problem.poses;
   if (problem.held_out) options.held_out_poses = *problem.held_out;
+  if (problem.equilibria) options.equilibria = *problem.equilibria;
   if (problem.omega_exponent) options.poses.omega_exponent = *problem.omega_exponent;
   if (!problem.amplitudes.empty()) options.poses.amplitudes = problem.amplitudes;
   if (problem.norm) options.norm = *problem.norm == "mass" ? ForceNorm::Mass : ForceNorm::Stiffness;
@@ -239,6 +240,7 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, c
             {"amplitudes", options.poses.amplitudes},
             {"inverted", to_text(*options.poses.inverted)},
             {"held_out", options.held_out_poses},
+            {"equilibria", num_equilibria(body, options)},
             {"seed", options.seed},
             {"material", law(body)},
             {"components", problem.components},

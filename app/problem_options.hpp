@@ -27,7 +27,7 @@ struct ProblemOptions {
   std::vector<std::filesystem::path> fix_file;
 
   std::string recipe = "default", subspace = "extended";
-  std::optional<Index> modes, dimension, poses, held_out;
+  std::optional<Index> modes, dimension, poses, held_out, equilibria;
   std::optional<std::filesystem::path> snapshots;  ///< for the subspace "pca"
   std::optional<double> omega_exponent;
   std::vector<double> amplitudes;

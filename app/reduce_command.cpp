@@ -11,6 +11,7 @@
 #include <io/plot.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace supple {
@@ -92,6 +93,7 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   json["points"] = report.points;
   json["training_error"] = report.training_error;
   json["held_out_error"] = report.held_out_error;
+  json["equilibrium_error"] = report.equilibrium_error;
   json["held_out"] = Json::array();
   const double largest = *std::max_element(options.poses.amplitudes.begin(), options.poses.amplitudes.end());
   for (const auto& [share, error] : report.held_out)
@@ -191,6 +193,8 @@ void print_summary(const ReduceCommand& command, const ReducedModel& model, cons
   for (const auto& [share, error] : report.held_out)
     held_out += (held_out.empty() ? "" : ", ") + shown_percent(error) +
                 (share < 1 ? " at " + shown(share) + " of the amplitude" : "");
+  if (std::isfinite(report.equilibrium_error))
+    rows.emplace_back("equilibria", "displaced by " + shown_percent(report.equilibrium_error));
   rows.emplace_back("held-out error", held_out.empty() ? "not measured" : held_out);
   if (report.exact_eigenvalues.size() > 0)
     rows.emplace_back("softest eigenvalue",

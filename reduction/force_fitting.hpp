@@ -138,6 +138,20 @@ class ForceFitting {
     Index size() const { return static_cast<Index>(indices_.size()); }
     Index index(Index k) const { return indices_[k]; }
 
+    /// Of column k: f̄(q_t) / ‖L F̄(q_t)‖ in the subspace, d × T; A has L times that.
+    Matrix forces(Index k) const {
+      Matrix result(fitting_->subspace_->dim(), fitting_->num_poses());
+      const auto E = E_.middleRows(k * rows_per_component, rows_per_component);
+      for (int x = 0; x < block; ++x) {
+        RowMatrix h(rows_per_component, result.cols());
+        for (int row = 0; row < rows_per_component; ++row)
+          h.row(row) = H_.row(k * local + row * block + x).head(result.cols());
+        const Matrix part = E.transpose() * h;
+        for (Index a = 0; a < part.rows(); ++a) result.row(a * block + x) = part.row(a);
+      }
+      return result;
+    }
+
     Vector times(VectorIn w) const {
       require_size("w", w.size(), size());
       // Σ_k w_k D_kᵀ h_k: p × (block · T), the x-th part reads rows (row, x) of H

@@ -15,6 +15,7 @@ Vector softest_eigenvalues(const Matrix& stiffness, Index first, Index count) {
 void check(const ReduceOptions& options) {
   require(options.points >= 1, "number of points is " + std::to_string(options.points) + ", expected at least 1");
   require(options.target_error >= 0, "target error is negative, expected 0 or more");
+  require(options.equilibria.value_or(0) >= 0, "number of equilibria is negative, expected 0 or more");
   require(options.held_out_poses >= 0, "number of held-out poses is negative, expected 0 or more");
   check(options.subspace_choice());
   const auto& selectors = known_selectors();
@@ -37,7 +38,13 @@ ReduceOptions ReduceOptions::paper() {
   options.poses.amplitudes = {0.07};
   options.norm = ForceNorm::Mass;
   options.selector = "nn-htp";
+  options.equilibria = 0;
   return options;
+}
+
+Index num_equilibria(const Body& body, const ReduceOptions& options) {
+  const bool useful = !std::holds_alternative<Shell>(body) && options.given_poses.size() == 0;
+  return options.equilibria.value_or(useful ? options.poses.count / 3 : 0);
 }
 
 ReducedModel reduce(const Body& body, const ReduceOptions& options, ReduceReport* report_out,

@@ -3,12 +3,16 @@
 
 #include <core/stopwatch.hpp>
 #include <physics/full_system.hpp>
+#include <reduction/equilibrium_fitting.hpp>
 #include <reduction/reduce.hpp>
+#include <sparse/nn_sp.hpp>
 #include <sparse/smallest_selection.hpp>
+#include <sparse/stacked_problem.hpp>
 
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <optional>
 
 namespace supple {
 
@@ -47,12 +51,19 @@ struct Training {
   std::shared_ptr<const S> subspace;
   Matrix rest_stiffness;  ///< UᵀK(0)U, d × d
   ReducedModes modes;
-  Fitting fitting;                                   ///< on the training poses
+  Fitting fitting;  ///< on the training poses
+  std::optional<EquilibriumFitting<Model, S>> equilibria = {};
   std::vector<std::pair<double, Fitting>> held_out;  ///< on fresh poses at these shares of the largest amplitude
 
   /// The reduced system of a selection.
   ReducedSystem<Model, S> reduced_system(std::span<const Index> indices, VectorIn weights) const {
     return {system->shared_model(), subspace, indices, weights, rest_stiffness, system->nodal_mass()};
+  }
+  /// Calls visit(problem) with what selectors solve: the training poses, above the equilibria if there are any.
+  template <typename Visitor>
+  decltype(auto) with_problem(const Visitor& visit) const {
+    if (equilibria) return visit(StackedProblem(fitting, *equilibria));
+    return visit(fitting);
   }
   /// Softest flexible eigenvalues of a reduced stiffness at rest, at most `count` [1/s²].
   Vector softest_eigenvalues(const Matrix& stiffness, Index count = 5) const;
@@ -69,8 +80,48 @@ Vector Training<Model, S>::softest_eigenvalues(const Matrix& stiffness, Index co
 struct ObjectTraits {
   double diagonal;  ///< the length that amplitudes are shares of [m]
   InvertedPoses inverted;
+  Index equilibria = 0;
   std::string component_name = "components";
 };
+
+/// Components that do the work of all, in ascending order.
+struct WorkingComponents {
+  std::vector<Index> indices;
+  Vector weights;  ///< > 0
+};
+/// Those of a selection with a positive weight: others, that a selector had to keep, do no work.
+/// \throws SolverError if a weight is negative or none is positive. \param selector  its name, for the message.
+WorkingComponents working_components(const Selection& selection, const std::string& selector);
+
+/// Poses in equilibrium of a rough selection. \throws std::invalid_argument for forces without a potential.
+template <ForceModel Model, Subspace S>
+void add_equilibria(const ObjectTraits& object, PoseOptions poses, const ReduceOptions& options,
+                    Training<Model, S>& training) {
+  if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
+    const auto& model = training.system->shared_model();
+    const Index d = training.subspace->dim();
+    const Selection rough =
+        NnSp{.max_iterations = 5, .seed = options.seed}(training.fitting, std::min(training.fitting.cols(), d));
+    const WorkingComponents working = working_components(rough, "nn-sp");
+    const auto system = training.reduced_system(working.indices, working.weights);
+    const double largest = *std::max_element(poses.amplitudes.begin(), poses.amplitudes.end());
+    poses.count = object.equilibria;
+    poses.amplitudes = {3 * largest, largest};
+    poses.seed += 15485863;
+    poses.inverted = InvertedPoses::Keep;  // of the linear responses, which nothing is trained on
+    const Matrix linear = sample_poses(model, *training.subspace, training.modes, training.system->nodal_mass().sum(),
+                                       object.diagonal, poses)
+                              .Q;
+    const Matrix relaxed =
+        treat_inverted(model, *training.subspace, equilibrium_poses(system, training.modes, linear), object.inverted).Q;
+    const double share = static_cast<double>(training.fitting.num_poses()) / static_cast<double>(object.equilibria);
+    training.equilibria.emplace(
+        model, training.subspace, relaxed, [&](VectorIn q) { return system.stiffness(q); },
+        std::pow(training.modes.positive_omega()[0], 2), 20 + training.modes.num_zero, std::sqrt(share));
+  } else {
+    require(false, "equilibria need forces with a potential");
+  }
+}
 
 template <ForceModel Model, Subspace S>
 Training<Model, S> train(const ObjectTraits& object, std::shared_ptr<const FullSystem<Model>> system,
@@ -129,8 +180,15 @@ Training<Model, S> train(const ObjectTraits& object, std::shared_ptr<const FullS
         share(static_cast<double>(held_out.size()) / 3);
       }
     });
-  return {std::move(system), std::move(subspace), std::move(rest_stiffness),
-          std::move(modes),  std::move(fitting),  std::move(held_out)};
+  Training<Model, S> training{.system = std::move(system),
+                              .subspace = std::move(subspace),
+                              .rest_stiffness = std::move(rest_stiffness),
+                              .modes = std::move(modes),
+                              .fitting = std::move(fitting),
+                              .held_out = std::move(held_out)};
+  if (object.equilibria > 0)
+    stage("equilibria", [&](auto) { add_equilibria(object, pose_options, options, training); });
+  return training;
 }
 
 /// Calls visit(training) with the Training of the body's force model and the subspace that the options name.
@@ -148,20 +206,12 @@ void with_training(const Body& body, const ReduceOptions& options, Stages& stage
                   [&]<typename S>(std::shared_ptr<const S> subspace) {
                     const ObjectTraits object{.diagonal = bounding_box(node_positions(body)).diagonal(),
                                               .inverted = inverted_rule(law(body), options.poses.inverted),
+                                              .equilibria = num_equilibria(body, options),
                                               .component_name = std::string(component_name(body))};
                     visit(train<Model, S>(object, system, std::move(subspace), options, stage));
                   });
   });
 }
-
-/// Components that do the work of all, in ascending order.
-struct WorkingComponents {
-  std::vector<Index> indices;
-  Vector weights;  ///< > 0
-};
-/// Those of a selection with a positive weight: others, that a selector had to keep, do no work.
-/// \throws SolverError if a weight is negative or none is positive. \param selector  its name, for the message.
-WorkingComponents working_components(const Selection& selection, const std::string& selector);
 
 /// Selects by select(problem, request), and measures what comes out; the report gets errors and spectra.
 template <ForceModel Model, Subspace S, typename Selector>
@@ -179,13 +229,16 @@ WorkingComponents select_components(const Training<Model, S>& training, const Se
       return training.held_out.front().second.error(indices, weights);
     };
   Selection selection = stage("selection", [&](auto) {
-    return options.target_error > 0 ? smallest_selection(select, training.fitting, request)
-                                    : select(training.fitting, request);
+    return training.with_problem([&](const auto& problem) {
+      return options.target_error > 0 ? smallest_selection(select, problem, request) : select(problem, request);
+    });
   });
   const WorkingComponents working = working_components(selection, options.selector);
   report.points = static_cast<Index>(working.indices.size());
   report.selection = std::move(selection.report);
   report.training_error = report.selection.training_error;
+  report.equilibrium_error = training.equilibria ? training.equilibria->error(working.indices, working.weights)
+                                                 : std::numeric_limits<double>::quiet_NaN();
   stage("checks", [&](auto) {
     report.held_out_error = std::numeric_limits<double>::quiet_NaN();
     for (const auto& [part, problem] : training.held_out)

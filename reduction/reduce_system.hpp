@@ -28,7 +28,7 @@ struct Reduction {
 
 /// Samples poses of the subspace, fits the forces by few components that `select` chooses, and measures the error. Any
 /// force model, subspace and selector will do; the model says where its nodes rest (rest_positions(), n × 3 [m]).
-/// Poses with inverted components are shrunk, unless the options say otherwise. Of the options, those of the
+/// Poses with inverted components are shrunk, and there are no equilibria, unless the options say otherwise. Of the options, those of the
 /// subspace and the name of the selector are not read.
 /// \throws as reduce() of a Body.
 template <ForceModel Model, Subspace S, typename Selector = NnSp>
@@ -44,7 +44,8 @@ Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std:
   result.report.components = system->model().num_components();
   result.report.fixed_nodes = system->num_nodes() - system->numbering().num_free();
   const ObjectTraits object{.diagonal = bounding_box(system->model().rest_positions()).diagonal(),
-                            .inverted = options.poses.inverted.value_or(InvertedPoses::Shrink)};
+                            .inverted = options.poses.inverted.value_or(InvertedPoses::Shrink),
+                            .equilibria = options.equilibria.value_or(0)};
   const Training<Model, S> training = train(object, system, subspace, options, stage);
   WorkingComponents working = select_components(training, select, options, stage);
   result.full = std::move(system);

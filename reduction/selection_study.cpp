@@ -41,11 +41,15 @@ struct SelectionStudy::Interface {
 
 template <typename AnyTraining>
 struct SelectionStudy::Model final : Interface {
+  using Stacked = StackedProblem<typename AnyTraining::Fitting, typename decltype(AnyTraining::equilibria)::value_type>;
   using Pulls = PullTest<typename AnyTraining::Model,
                          std::remove_const_t<typename decltype(AnyTraining::subspace)::element_type>>;
 
   Model(AnyTraining&& some, double diagonal, std::vector<PullScene> pulled, Stages& stage)
-      : training(std::move(some)), any(training.fitting) {
+      : training(std::move(some)),
+        stacked(training.equilibria ? std::optional<Stacked>(std::in_place, training.fitting, *training.equilibria)
+                                    : std::nullopt),
+        any(stacked ? AnyProblem(*stacked) : AnyProblem(training.fitting)) {
     exact_softest = training.softest_eigenvalues(training.rest_stiffness, 1)[0];
     if (pulled.empty()) return;
     stage("reference motions", [&](auto) {
@@ -103,6 +107,7 @@ struct SelectionStudy::Model final : Interface {
   }
 
   AnyTraining training;
+  std::optional<Stacked> stacked;  // if there are equilibria
   AnyProblem any;
   double exact_softest = 0;
   std::optional<Pulls> pulls;

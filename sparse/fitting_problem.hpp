@@ -53,11 +53,11 @@ concept FullGradientProblem = FittingProblem<P> && requires(const P& p, VectorIn
   { p.squared_norms() } -> std::convertible_to<Vector>;     // ‖A e_j‖²   (cols)
 };
 
-/// A problem whose rows come in equal groups (training poses) of which some may stand for all.
+/// A problem whose rows come in groups (training poses) of which some may stand for all.
 template <typename P>
 concept GroupedFittingProblem = FittingProblem<P> && requires(const P& p, std::span<const Index> groups) {
-  { p.num_groups() } -> std::convertible_to<Index>;  // rows / num_groups rows each
-  { p.restricted_to(groups) } -> FittingProblem;     // the rows of these groups; may refer to p
+  { p.num_groups() } -> std::convertible_to<Index>;
+  { p.restricted_to(groups) } -> FittingProblem;  // the rows of these groups; may refer to p
 };
 
 /// Evaluated columns stored as they are: the block of every problem that has none of its own.

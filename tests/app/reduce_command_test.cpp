@@ -146,6 +146,18 @@ TEST_F(ReduceCommandTest, WeightsAllCandidatesByNnls) {
   expect_refusal(small({"--selector", "all"}), {"192", "--points 30"});
 }
 
+TEST_F(ReduceCommandTest, FitsEquilibriaToo) {
+  const json without = report(small({"--equilibria", "0"})), with = report(small({"--equilibria", "12"}));
+  EXPECT_EQ(report(small())["options"]["equilibria"], 6);  // a third of 20 poses
+  EXPECT_TRUE(without["equilibrium_error"].is_null());
+  EXPECT_GT(with["equilibrium_error"], 0.0);
+  EXPECT_LT(with["equilibrium_error"], 0.2);
+  EXPECT_EQ(with["options"]["equilibria"], 12);
+  EXPECT_LT(with["training_error"], 2 * without["training_error"].get<double>());
+  EXPECT_THAT(supple(small({"--equilibria", "3"})).out, testing::HasSubstr("equilibria"));
+  expect_refusal(small({"--equilibria", "-1"}), {"--equilibria"});
+}
+
 TEST_F(ReduceCommandTest, UnderstandsUnits) {
   const json a = report(small({"--young", "0.2 MPa", "--density", "1.1 g/m^3"}));
   const json b = report(small({"--young", "2e5", "--density", "1.1e-3"}));

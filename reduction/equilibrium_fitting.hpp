@@ -1,0 +1,139 @@
+#pragma once
+/// \file Fitting where objects come to rest: poses in equilibrium, and errors of the force as displacements there.
+
+#include <physics/static_solver.hpp>
+#include <reduction/force_fitting.hpp>
+
+#include <Eigen/Eigenvalues>
+
+namespace supple {
+
+/// Equilibria of a reduced system under random loads: of those whose linear response are the columns of Q (d × T). What
+/// has no energy is held by springs as stiff as the softest flexible mode.
+/// \param system  a rough selection will do: the poses need not be equilibria of all components.
+/// \return d × T. Poses that the solver does not finish are where it stopped.
+template <DynamicalSystem System>
+Matrix equilibrium_poses(const System& system, const ReducedModes& modes, MatrixIn Q) {
+  const auto rigid = modes.Phi.leftCols(modes.num_zero);
+  Matrix springs;
+  if (modes.num_zero > 0) springs = std::pow(modes.positive_omega()[0], 2) * rigid * rigid.transpose();
+  Matrix poses = Matrix::Zero(Q.rows(), Q.cols());
+  parallel_for(Q.cols(), [&](Index t) {
+    StaticSolver solver(system, {.tolerance = 1e-4, .max_iterations = 60});
+    Vector q = poses.col(t);
+    if (solver.solve({system.rest_stiffness() * Q.col(t), springs}, q).status != Status::NotFinite) poses.col(t) = q;
+  });
+  return poses;
+}
+
+/// Rows of how far errors of the force move an object that is in equilibrium: of component i at pose t
+///   Lₜ f̄ᵢ(q_t),  Lₜ = Λ⁻¹ Vᵀ / ‖q_t‖
+/// with the `rank` softest eigenpairs of the tangent there (not at rest: large poses are stiffer here and softer there).
+/// At rest under loads stiff modes have relaxed; forces are small, and errors that drown in those of random poses
+/// displace soft modes. Equal to ‖Δq‖ / ‖q_t‖ for small errors Δf̄ = K̄(q_t) Δq along these modes.
+/// A BlockFittingProblem, FullGradientProblem and GroupedFittingProblem (groups are poses).
+template <ForceModel Model, Subspace S>
+class EquilibriumFitting {
+ public:
+  using Columns = DenseColumns;
+
+  /// \param poses    d × T, none without force.
+  /// \param tangent  K̄(q), d × d: that of a rough selection will do.
+  /// \param softest  the lowest eigenvalue to be told from zero, such as the softest flexible one at rest: divisors are
+  /// kept above a quarter of it.
+  /// \param rank     eigenpairs for each pose.
+  /// \param scale    of all rows.
+  EquilibriumFitting(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace, const Matrix& poses,
+                     const std::function<Matrix(VectorIn q)>& tangent, double softest, Index rank, double scale = 1)
+      : forces_(std::move(model), std::move(subspace), Matrix::Identity(poses.rows(), poses.rows()), poses),
+        scale_(scale),
+        L_(poses.cols()) {
+    const Index r = std::min(rank, poses.rows());
+    parallel_for(poses.cols(), [&](Index t) {
+      const Eigen::SelfAdjointEigenSolver<Matrix> pairs(tangent(poses.col(t)));
+      const Vector divisors = pairs.eigenvalues().head(r).cwiseAbs().cwiseMax(0.25 * softest);
+      L_[t] = scale / poses.col(t).norm() * divisors.cwiseInverse().asDiagonal() *
+              pairs.eigenvectors().leftCols(r).transpose();
+    });
+    complete();
+  }
+
+  Index rows() const { return b_.size(); }  ///< rank · T
+  Index cols() const { return forces_.cols(); }
+  const Vector& rhs() const { return b_; }
+  const Matrix& poses() const { return forces_.poses(); }
+
+  void column(Index j, VectorOut out) const { out = columns(std::span<const Index>(&j, 1)).values().col(0); }
+
+  DenseColumns columns(std::span<const Index> js) const {
+    const auto count = static_cast<Index>(js.size());
+    const Index d = poses().rows(), T = num_groups(), r = rows() / T;
+    const auto local = forces_.columns(js);
+    Matrix A(rows(), count);
+    constexpr Index at_once = 32;
+    parallel_ranges(count, at_once, [&](Index begin, Index end) {
+      Matrix f(d, T * at_once);  // at pose t, of one component after another
+      for (Index k = begin; k < end; ++k) {
+        const Matrix f_k = local.forces(k);
+        for (Index t = 0; t < T; ++t) f.col(t * at_once + k - begin) = f_k.col(t);
+      }
+      for (Index t = 0; t < T; ++t)
+        A.block(t * r, begin, r, end - begin).noalias() = scaled_L_[t] * f.middleCols(t * at_once, end - begin);
+    });
+    return DenseColumns({js.begin(), js.end()}, std::move(A));
+  }
+
+  /// Root mean square over the poses of ‖Δq‖ / ‖q_t‖.
+  double error(std::span<const Index> indices, VectorIn weights) const {
+    return (columns(indices).times(weights) - b_).norm() / (scale_ * std::sqrt(static_cast<double>(num_groups())));
+  }
+
+  Vector transpose_times(VectorIn r) const {
+    require_size("r", r.size(), rows());
+    const Index rank = rows() / num_groups();
+    Matrix pulled(poses().rows(), num_groups());
+    for (Index t = 0; t < num_groups(); ++t) pulled.col(t) = scaled_L_[t].transpose() * r.segment(t * rank, rank);
+    return forces_.transpose_times(pulled.reshaped());
+  }
+  Vector squared_norms() const {
+    Vector result(cols());
+    constexpr Index at_once = 2048;
+    for (Index begin = 0; begin < cols(); begin += at_once) {
+      std::vector<Index> js(std::min(at_once, cols() - begin));
+      for (std::size_t k = 0; k < js.size(); ++k) js[k] = begin + static_cast<Index>(k);
+      result.segment(begin, js.size()) = columns(js).squared_norms();
+    }
+    return result;
+  }
+
+  Index num_groups() const { return static_cast<Index>(L_.size()); }  ///< T
+  EquilibriumFitting restricted_to(std::span<const Index> poses) const {
+    std::vector<Matrix> L;
+    for (const Index t : poses) L.push_back(L_[t]);
+    return {forces_.restricted_to(poses), std::move(L), scale_};
+  }
+
+ private:
+  EquilibriumFitting(ForceFitting<Model, S> forces, std::vector<Matrix> L, double scale)
+      : forces_(std::move(forces)), scale_(scale), L_(std::move(L)) {
+    complete();
+  }
+
+  void complete() {
+    const Index r = L_.front().rows();
+    b_.resize(r * num_groups());
+    for (Index t = 0; t < num_groups(); ++t) {
+      const Vector f = forces_.forces().col(t);
+      scaled_L_.push_back(f.norm() * L_[t]);
+      b_.segment(t * r, r) = L_[t] * f;
+    }
+  }
+
+  ForceFitting<Model, S> forces_;  // in the norm I: local forces over ‖F̄(q_t)‖
+  double scale_;
+  std::vector<Matrix> L_;         // rank × d for each pose
+  std::vector<Matrix> scaled_L_;  // times ‖F̄(q_t)‖
+  Vector b_;
+};
+
+}  // namespace supple
