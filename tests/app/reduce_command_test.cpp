@@ -93,6 +93,7 @@ TEST_F(ReduceCommandTest, TakesRecipesAndWhatOverridesThem) {
   EXPECT_EQ(paper["norm"], "mass");
   EXPECT_EQ(paper["omega_exponent"], 1);
   EXPECT_EQ(paper["poses"], 20);
+  EXPECT_EQ(paper["equilibria"], 0);
   EXPECT_EQ(paper["amplitudes"], json({0.02, 0.01}));
   const json usual = report(small({"--norm", "mass"}))["options"];
   EXPECT_EQ(usual["norm"], "mass");
@@ -270,6 +271,7 @@ TEST_F(ReduceCommandTest, TakesSurfacesAsShells) {
   };
   const json report = this->report(plate({"--thickness", "2 cm", "--picture", "plate.png", "--plots", "plots"}));
   EXPECT_GT(report["mesh"]["flaps"], 100);
+  EXPECT_EQ(report["options"]["equilibria"], 0);
   EXPECT_FALSE(report["mesh"].contains("tets"));
   EXPECT_EQ(report["dimension"], 36);
   EXPECT_LT(report["training_error"], 0.4);
