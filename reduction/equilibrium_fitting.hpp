@@ -11,17 +11,18 @@ namespace supple {
 /// Equilibria of a reduced system under random loads: of those whose linear response are the columns of Q (d × T). What
 /// has no energy is held by springs as stiff as the softest flexible mode.
 /// \param system  a rough selection will do: the poses need not be equilibria of all components.
-/// \return d × T. Poses that the solver does not finish are where it stopped.
+/// \return d × T. Poses that the solver does not finish are where it stopped, at worst the linear response.
 template <DynamicalSystem System>
 Matrix equilibrium_poses(const System& system, const ReducedModes& modes, MatrixIn Q) {
   const auto rigid = modes.Phi.leftCols(modes.num_zero);
   Matrix springs;
   if (modes.num_zero > 0) springs = std::pow(modes.positive_omega()[0], 2) * rigid * rigid.transpose();
-  Matrix poses = Matrix::Zero(Q.rows(), Q.cols());
+  Matrix poses = Q;
   parallel_for(Q.cols(), [&](Index t) {
     StaticSolver solver(system, {.tolerance = 1e-4, .max_iterations = 60});
-    Vector q = poses.col(t);
-    if (solver.solve({system.rest_stiffness() * Q.col(t), springs}, q).status != Status::NotFinite) poses.col(t) = q;
+    Vector q = Vector::Zero(Q.rows());
+    const StaticReport report = solver.solve({system.rest_stiffness() * Q.col(t), springs}, q);
+    if (report.status != Status::NotFinite && q.norm() > 0) poses.col(t) = q;
   });
   return poses;
 }
