@@ -25,7 +25,7 @@ struct ReduceOptions {
   ForceNorm norm = ForceNorm::Stiffness;
   Matrix given_poses = {};  ///< d × T, instead of random ones; or 3n × T displacements, projected to the subspace
   /// Further poses, in equilibrium under random loads, where errors of the force count by the displacement that they
-  /// cause (see EquilibriumFitting): motions come out two to three times as accurate. Their loads are three times and
+  /// cause (see EquilibriumFitting): motions come out about twice as accurate. Their loads are three times and
   /// once those of the largest poses; together they weigh as much as the others. None: see num_equilibria().
   std::optional<Index> equilibria = {};
   std::string selector = "nn-sp";      ///< see known_selectors()
