@@ -216,9 +216,9 @@ void add_training(CLI::App& command, ProblemOptions& c) {
       ->type_name("FILE")
       ->group(method);
   command
-      .add_option(
-          "--equilibria", c.equilibria,
-          "Further poses, in equilibrium, where errors count as displacements [a third of the poses; shells, paper: 0]")
+      .add_option("--equilibria", c.equilibria,
+                  "Further poses, in equilibrium, where errors count as displacements [a third of the poses; free "
+                  "shells, paper: 0]")
       ->check(whole_number(0))
       ->type_name("N")
       ->group(method);

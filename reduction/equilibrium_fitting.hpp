@@ -47,16 +47,27 @@ class EquilibriumFitting {
   EquilibriumFitting(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace, const Matrix& poses,
                      const std::function<Matrix(VectorIn q)>& tangent, double softest, Index rank, double scale = 1)
       : forces_(std::move(model), std::move(subspace), Matrix::Identity(poses.rows(), poses.rows()), poses),
+        softest_(softest),
         scale_(scale),
         L_(poses.cols()) {
-    const Index r = std::min(rank, poses.rows());
-    parallel_for(poses.cols(), [&](Index t) {
-      const Eigen::SelfAdjointEigenSolver<Matrix> pairs(tangent(poses.col(t)));
-      const Vector divisors = pairs.eigenvalues().head(r).cwiseAbs().cwiseMax(0.25 * softest);
-      L_[t] = scale / poses.col(t).norm() * divisors.cwiseInverse().asDiagonal() *
-              pairs.eigenvectors().leftCols(r).transpose();
-    });
+    parallel_for(poses.cols(),
+                 [&](Index t) { L_[t] = displacements(tangent(poses.col(t)), t, std::min(rank, poses.rows())); });
     complete();
+  }
+
+  /// The same poses by the tangents of a fitted system. Errors of the fit couple soft modes to stiff ones, which makes the
+  /// object softer than its errors along soft modes tell; its own tangents tell. Poses at which they say that it is
+  /// displaced by more than `trusted` of the pose, where the response is not linear, keep their rows.
+  /// \param system  of the same subspace.
+  template <DynamicalSystem System>
+  EquilibriumFitting with_tangents_of(const System& system, double trusted = 0.3) const {
+    std::vector<Matrix> L = L_;
+    parallel_for(num_groups(), [&](Index t) {
+      const auto q = poses().col(t);
+      const Matrix own = displacements(system.stiffness(q), t, L_[t].rows());
+      if ((own * (system.force(q) - forces_.forces().col(t))).norm() < trusted * scale_) L[t] = own;
+    });
+    return {forces_, std::move(L), softest_, scale_};
   }
 
   Index rows() const { return b_.size(); }  ///< rank · T
@@ -111,13 +122,21 @@ class EquilibriumFitting {
   EquilibriumFitting restricted_to(std::span<const Index> poses) const {
     std::vector<Matrix> L;
     for (const Index t : poses) L.push_back(L_[t]);
-    return {forces_.restricted_to(poses), std::move(L), scale_};
+    return {forces_.restricted_to(poses), std::move(L), softest_, scale_};
   }
 
  private:
-  EquilibriumFitting(ForceFitting<Model, S> forces, std::vector<Matrix> L, double scale)
-      : forces_(std::move(forces)), scale_(scale), L_(std::move(L)) {
+  EquilibriumFitting(ForceFitting<Model, S> forces, std::vector<Matrix> L, double softest, double scale)
+      : forces_(std::move(forces)), softest_(softest), scale_(scale), L_(std::move(L)) {
     complete();
+  }
+
+  /// Lₜ of a tangent at pose t, times the scale (rank × d).
+  Matrix displacements(const Matrix& tangent, Index t, Index rank) const {
+    const Eigen::SelfAdjointEigenSolver<Matrix> pairs(tangent);
+    const Vector divisors = pairs.eigenvalues().head(rank).cwiseAbs().cwiseMax(0.25 * softest_);
+    return scale_ / poses().col(t).norm() * divisors.cwiseInverse().asDiagonal() *
+           pairs.eigenvectors().leftCols(rank).transpose();
   }
 
   void complete() {
@@ -131,7 +150,7 @@ class EquilibriumFitting {
   }
 
   ForceFitting<Model, S> forces_;  // in the norm I: local forces over ‖F̄(q_t)‖
-  double scale_;
+  double softest_, scale_;
   std::vector<Matrix> L_;         // rank × d for each pose
   std::vector<Matrix> scaled_L_;  // times ‖F̄(q_t)‖
   Vector b_;

@@ -43,7 +43,8 @@ ReduceOptions ReduceOptions::paper() {
 }
 
 Index num_equilibria(const Body& body, const ReduceOptions& options) {
-  const bool useful = !std::holds_alternative<Shell>(body) && options.given_poses.size() == 0;
+  const bool free_shell = std::holds_alternative<Shell>(body) && fixed_nodes(body).empty();
+  const bool useful = options.given_poses.size() == 0 && !free_shell;
   return options.equilibria.value_or(useful ? options.poses.count / 3 : 0);
 }
 
@@ -78,15 +79,20 @@ WorkingComponents working_components(const Selection& selection, const std::stri
                       "' gave negative weights, with which a reduced object may be unstable; choose one "
                       "that keeps them positive, such as " +
                       known_selectors().front());
+  WorkingComponents result = with_positive_weights(selection.indices, selection.weights);
+  if (result.indices.empty()) throw SolverError("the selector found no component with a positive weight");
+  return result;
+}
+
+WorkingComponents with_positive_weights(std::span<const Index> indices, VectorIn weights) {
   WorkingComponents result;
-  std::vector<double> weights;
-  for (Index k = 0; k < selection.size(); ++k)
-    if (selection.weights[k] > 0) {
-      result.indices.push_back(selection.indices[k]);
-      weights.push_back(selection.weights[k]);
+  result.weights.resize(weights.size());
+  for (Index k = 0; k < weights.size(); ++k)
+    if (weights[k] > 0) {
+      result.weights[static_cast<Index>(result.indices.size())] = weights[k];
+      result.indices.push_back(indices[static_cast<std::size_t>(k)]);
     }
-  if (weights.empty()) throw SolverError("the selector found no component with a positive weight");
-  result.weights = Eigen::Map<const Vector>(weights.data(), static_cast<Index>(weights.size()));
+  result.weights.conservativeResize(static_cast<Index>(result.indices.size()));
   return result;
 }
 

@@ -25,8 +25,9 @@ struct ReduceOptions {
   ForceNorm norm = ForceNorm::Stiffness;
   Matrix given_poses = {};  ///< d × T, instead of random ones; or 3n × T displacements, projected to the subspace
   /// Further poses, in equilibrium under random loads, where errors of the force count by the displacement that they
-  /// cause (see EquilibriumFitting): motions come out about twice as accurate. Their loads are three times and
-  /// once those of the largest poses; together they weigh as much as the others. None: see num_equilibria().
+  /// cause (see EquilibriumFitting): motions come out about twice as accurate. Loads are 3, 1 and 0.3 times those of the
+  /// largest poses, a third of that for shells, which buckle; all together weigh as much as the other poses. None: see
+  /// num_equilibria().
   std::optional<Index> equilibria = {};
   std::string selector = "nn-sp";      ///< see known_selectors()
   Index points = 150;                  ///< s, largest number of components
@@ -47,8 +48,8 @@ struct ReduceOptions {
   static ReduceOptions paper();
 };
 
-/// As many as the options say; otherwise a third of the random poses for solids, none for shells, which buckle under
-/// such loads, nor beside given poses.
+/// As many as the options say; otherwise a third of the random poses, none beside given ones nor for free shells, whose
+/// forces would be a quarter further off.
 Index num_equilibria(const Body& body, const ReduceOptions& options);
 
 /// What becomes of poses with inverted tets of a material law: as asked for; otherwise Keep where the law's energy
@@ -66,7 +67,7 @@ struct ReduceReport {
   std::vector<std::pair<double, double>> held_out;  ///< share of that amplitude (1, 0.3, 0.1) and error
   /// Softest flexible eigenvalues of the fitted rest stiffness and of the exact reduced one [1/s²].
   Vector fitted_eigenvalues, exact_eigenvalues;
-  double equilibrium_error = 0;  ///< rms of ‖Δq‖ / ‖q‖ over the equilibria; NaN without
+  double equilibrium_error = 0;  ///< rms of ‖Δq‖ / ‖q‖ over the equilibria, by the model's own tangents; NaN without
   SelectionReport selection;
   std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order
   double total_seconds = 0;

@@ -5,7 +5,8 @@
 #include <physics/full_system.hpp>
 #include <reduction/equilibrium_fitting.hpp>
 #include <reduction/reduce.hpp>
-#include <sparse/nn_sp.hpp>
+#include <sparse/greedy_cubature.hpp>
+#include <sparse/nnls.hpp>
 #include <sparse/smallest_selection.hpp>
 #include <sparse/stacked_problem.hpp>
 
@@ -41,6 +42,18 @@ class Stages {
   Progress progress_;
 };
 
+/// Components that do the work of all, in ascending order.
+struct WorkingComponents {
+  std::vector<Index> indices;
+  Vector weights;  ///< > 0
+};
+/// Those of a selection with a positive weight: others, that a selector had to keep, do no work.
+/// \throws SolverError if a weight is negative or none is positive. \param selector  its name, for the message.
+WorkingComponents working_components(const Selection& selection, const std::string& selector);
+
+/// Those with a positive weight, in the order given.
+WorkingComponents with_positive_weights(std::span<const Index> indices, VectorIn weights);
+
 /// What a selection is made for, and what it is judged by.
 template <ForceModel F, Subspace S>
 struct Training {
@@ -59,12 +72,26 @@ struct Training {
   ReducedSystem<Model, S> reduced_system(std::span<const Index> indices, VectorIn weights) const {
     return {system->shared_model(), subspace, indices, weights, rest_stiffness, system->nodal_mass()};
   }
+  /// The equilibria by its own tangents; there must be some.
+  EquilibriumFitting<Model, S> equilibria_of(const WorkingComponents& working) const {
+    return equilibria->with_tangents_of(reduced_system(working.indices, working.weights));
+  }
   /// Calls visit(problem) with what selectors solve: the training poses, above the equilibria if there are any.
   template <typename Visitor>
   decltype(auto) with_problem(const Visitor& visit) const {
     if (equilibria) return visit(StackedProblem(fitting, *equilibria));
     return visit(fitting);
   }
+  /// Of everything that selectors solve, relative.
+  double error(const WorkingComponents& working) const {
+    return with_problem([&](const auto& problem) {
+      const Vector& b = problem.rhs();
+      return (problem.columns(working.indices).times(working.weights) - b).norm() / b.norm();
+    });
+  }
+  /// Weights fitted once more, with the tangents of the object that the components make in place of those of a rough
+  /// selection; as they are where that does not bring its equilibria nearer, or there are none.
+  WorkingComponents refitted(const WorkingComponents& working) const;
   /// Softest flexible eigenvalues of a reduced stiffness at rest, at most `count` [1/s²].
   Vector softest_eigenvalues(const Matrix& stiffness, Index count = 5) const;
 };
@@ -76,22 +103,28 @@ Vector Training<Model, S>::softest_eigenvalues(const Matrix& stiffness, Index co
   return supple::softest_eigenvalues(stiffness, modes.num_zero, count);
 }
 
+template <ForceModel Model, Subspace S>
+WorkingComponents Training<Model, S>::refitted(const WorkingComponents& working) const {
+  if (!equilibria) return working;
+  const auto own = equilibria_of(working);
+  const StackedProblem problem(fitting, own);
+  const auto columns = problem.columns(working.indices);
+  const WorkingComponents refit =
+      with_positive_weights(working.indices, Fnnls{}(columns.gram(columns), columns.transpose_times(problem.rhs())).w);
+  if (refit.indices.empty()) return working;
+  const bool nearer =
+      equilibria_of(refit).error(refit.indices, refit.weights) < own.error(working.indices, working.weights);
+  return nearer ? refit : working;
+}
+
 /// What training needs to know of an object beside its system.
 struct ObjectTraits {
   double diagonal;  ///< the length that amplitudes are shares of [m]
   InvertedPoses inverted;
   Index equilibria = 0;
+  bool thin = false;  ///< buckles under large loads: equilibria have a third of them
   std::string component_name = "components";
 };
-
-/// Components that do the work of all, in ascending order.
-struct WorkingComponents {
-  std::vector<Index> indices;
-  Vector weights;  ///< > 0
-};
-/// Those of a selection with a positive weight: others, that a selector had to keep, do no work.
-/// \throws SolverError if a weight is negative or none is positive. \param selector  its name, for the message.
-WorkingComponents working_components(const Selection& selection, const std::string& selector);
 
 /// Poses in equilibrium of a rough selection. \throws std::invalid_argument for forces without a potential.
 template <ForceModel Model, Subspace S>
@@ -99,14 +132,15 @@ void add_equilibria(const ObjectTraits& object, PoseOptions poses, const ReduceO
                     Training<Model, S>& training) {
   if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
     const auto& model = training.system->shared_model();
-    const Index d = training.subspace->dim();
-    const Selection rough =
-        NnSp{.max_iterations = 5, .seed = options.seed}(training.fitting, std::min(training.fitting.cols(), d));
-    const WorkingComponents working = working_components(rough, "nn-sp");
+    const Index size = std::min(training.fitting.cols(), 4 * training.subspace->dim());
+    const WorkingComponents working =
+        working_components(BatchedGreedy{.seed = options.seed}(training.fitting, size), "batched-greedy");
     const auto system = training.reduced_system(working.indices, working.weights);
     const double largest = *std::max_element(poses.amplitudes.begin(), poses.amplitudes.end());
     poses.count = object.equilibria;
-    poses.amplitudes = {3 * largest, largest};
+    poses.amplitudes = {3 * largest, largest, 0.3 * largest};
+    if (object.thin)
+      for (double& amplitude : poses.amplitudes) amplitude /= 3;
     poses.seed += 15485863;
     poses.inverted = InvertedPoses::Keep;  // of the linear responses, which nothing is trained on
     const Matrix linear = sample_poses(model, *training.subspace, training.modes, training.system->nodal_mass().sum(),
@@ -207,6 +241,7 @@ void with_training(const Body& body, const ReduceOptions& options, Stages& stage
                     const ObjectTraits object{.diagonal = bounding_box(node_positions(body)).diagonal(),
                                               .inverted = inverted_rule(law(body), options.poses.inverted),
                                               .equilibria = num_equilibria(body, options),
+                                              .thin = std::holds_alternative<Shell>(body),
                                               .component_name = std::string(component_name(body))};
                     visit(train<Model, S>(object, system, std::move(subspace), options, stage));
                   });
@@ -233,12 +268,17 @@ WorkingComponents select_components(const Training<Model, S>& training, const Se
       return options.target_error > 0 ? smallest_selection(select, problem, request) : select(problem, request);
     });
   });
-  const WorkingComponents working = working_components(selection, options.selector);
+  WorkingComponents working = working_components(selection, options.selector);
+  stage("refit", [&](auto) {
+    WorkingComponents refit = training.refitted(working);
+    if (options.target_error == 0 || training.error(refit) <= options.target_error) working = std::move(refit);
+  });
   report.points = static_cast<Index>(working.indices.size());
   report.selection = std::move(selection.report);
-  report.training_error = report.selection.training_error;
-  report.equilibrium_error = training.equilibria ? training.equilibria->error(working.indices, working.weights)
-                                                 : std::numeric_limits<double>::quiet_NaN();
+  report.training_error = training.error(working);
+  report.equilibrium_error = training.equilibria
+                                 ? training.equilibria_of(working).error(working.indices, working.weights)
+                                 : std::numeric_limits<double>::quiet_NaN();
   stage("checks", [&](auto) {
     report.held_out_error = std::numeric_limits<double>::quiet_NaN();
     for (const auto& [part, problem] : training.held_out)

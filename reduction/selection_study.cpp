@@ -78,21 +78,20 @@ struct SelectionStudy::Model final : Interface {
 
   SelectionMeasure measure(const Selection& selection) const override {
     SelectionMeasure measure;
-    for (const auto& [share, problem] : training.held_out)
-      measure.held_out.emplace_back(share, problem.error(selection.indices, selection.weights));
     measure.softest_eigenvalue = measure.force_seconds = nan;
     measure.trajectory_errors.assign(references.size(), nan);
-    std::vector<Index> used;
-    Vector weights(selection.size());
-    for (Index k = 0; k < selection.size(); ++k)
-      if (selection.weights[k] != 0) {
-        weights[static_cast<Index>(used.size())] = selection.weights[k];
-        used.push_back(selection.indices[k]);
-      }
-    weights.conservativeResize(static_cast<Index>(used.size()));
-    if (used.empty() || (weights.array() < 0).any()) return measure;
-
-    const auto system = training.reduced_system(used, weights);
+    const auto hold_out = [&](std::span<const Index> indices, VectorIn weights) {
+      for (const auto& [share, problem] : training.held_out)
+        measure.held_out.emplace_back(share, problem.error(indices, weights));
+    };
+    WorkingComponents working = with_positive_weights(selection.indices, selection.weights);
+    if (working.indices.empty() || (selection.weights.array() < 0).any()) {
+      hold_out(selection.indices, selection.weights);
+      return measure;
+    }
+    working = training.refitted(working);
+    hold_out(working.indices, working.weights);
+    const auto system = training.reduced_system(working.indices, working.weights);
     const Vector rest = Vector::Zero(system.dim());
     measure.softest_eigenvalue = training.softest_eigenvalues(system.stiffness(rest), 1)[0] / exact_softest;
     Vector force(system.dim());

@@ -60,7 +60,8 @@ TEST_F(ReduceCommandTest, ReportsWhatItMeasured) {
   EXPECT_FALSE(report["selection"]["stop_reason"].get<std::string>().empty());
   double best = 1;
   for (const json& step : report["selection"]["history"]) best = std::min(best, step["training_error"].get<double>());
-  EXPECT_NEAR(best, report["training_error"].get<double>(), 1e-6);
+  EXPECT_GE(report["training_error"], best * (1 - 1e-9));  // weights are refitted after it, for the sake of equilibria
+  EXPECT_LT(report["training_error"], best * 1.1);
   double sum = 0;
   for (const auto& [stage, seconds] : report["seconds"].items())
     if (stage != "total") sum += seconds.get<double>();
@@ -271,7 +272,11 @@ TEST_F(ReduceCommandTest, TakesSurfacesAsShells) {
   };
   const json report = this->report(plate({"--thickness", "2 cm", "--picture", "plate.png", "--plots", "plots"}));
   EXPECT_GT(report["mesh"]["flaps"], 100);
-  EXPECT_EQ(report["options"]["equilibria"], 0);
+  EXPECT_EQ(report["options"]["equilibria"], 6);
+  EXPECT_LT(report["equilibrium_error"], 0.2);
+  EXPECT_EQ(this->report({"reduce", "plate:12x6", "-o", "free.supple", "--modes", "8", "--poses", "20", "--points",
+                          "60", "--held-out", "0"})["options"]["equilibria"],
+            0);  // free shells have none
   EXPECT_FALSE(report["mesh"].contains("tets"));
   EXPECT_EQ(report["dimension"], 36);
   EXPECT_LT(report["training_error"], 0.4);

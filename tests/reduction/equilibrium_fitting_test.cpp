@@ -1,7 +1,9 @@
 #include <reduction/equilibrium_fitting.hpp>
 #include <reduction/modal_basis.hpp>
+#include <reduction/reduce_stages.hpp>
 #include <reduction/reduced_system.hpp>
 #include <reduction/training_poses.hpp>
+#include <sparse/nn_sp.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
 #include <tests/support/bars.hpp>
@@ -43,6 +45,18 @@ struct EquilibriumFittingTest : testing::Test {
             scale};
   }
 
+  /// Root mean square over the poses of how far their equilibria move in another system, relative.
+  double moved(const System& wrong, const Matrix& Q) const {
+    double sum = 0;
+    for (Index t = 0; t < Q.cols(); ++t) {
+      Vector q = Q.col(t);
+      StaticSolver solver(wrong, {.tolerance = 1e-12});
+      EXPECT_LE(solver.solve({reduced.force(Q.col(t)), {}}, q).residual, 1e-9);
+      sum += (q - Q.col(t)).squaredNorm() / Q.col(t).squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(Q.cols()));
+  }
+
   const StvkBar system;
   const std::shared_ptr<const NodalBasis> basis;
   const Matrix stiffness;
@@ -65,20 +79,58 @@ TEST_F(EquilibriumFittingTest, ErrorsAreDisplacementsOfTheEquilibrium) {
   const Matrix Q = equilibrium_poses(reduced, modes, linear);
   const Index m = system.model().num_components();
   const Vector w = Vector::Ones(m) + 1e-4 * random_vector(m, 1, 5);
-  const System wrong = with(w);
-  double sum = 0;
-  for (Index t = 0; t < Q.cols(); ++t) {
-    Vector q = Q.col(t);
-    StaticSolver solver(wrong, {.tolerance = 1e-12});
-    ASSERT_LE(solver.solve({reduced.force(Q.col(t)), {}}, q).residual, 1e-9);
-    sum += (q - Q.col(t)).squaredNorm() / Q.col(t).squaredNorm();
-  }
-  const double moved = std::sqrt(sum / static_cast<double>(Q.cols()));
+  const double moved = this->moved(with(w), Q);
   EXPECT_GT(moved, 1e-6);
   EXPECT_NEAR(fitting(Q, basis->dim()).error(all_components(m), w), moved, 2e-3 * moved);
   EXPECT_NEAR(fitting(Q, basis->dim(), 7).error(all_components(m), w), moved, 2e-3 * moved);  // whatever the scale
   EXPECT_LE(fitting(Q, 8).error(all_components(m), w), moved * 1.002);  // along some directions only
   EXPECT_GT(fitting(Q, 8).error(all_components(m), w), 0.5 * moved);    // the softest tell nearly all
+}
+
+// Large errors of the forces make an object softer or stiffer, too: its own tangents tell how far it moves.
+TEST_F(EquilibriumFittingTest, OwnTangentsTellOfLargeErrors) {
+  const Matrix Q = equilibrium_poses(reduced, modes, linear);
+  const Index m = system.model().num_components();
+  const Vector w = Vector::Constant(m, 0.8) + 0.3 * random_vector(m, 1, 5);
+  const System wrong = with(w);
+  const double moved = this->moved(wrong, Q);
+  const Fitting exact = fitting(Q, basis->dim(), 2), own = exact.with_tangents_of(wrong, 10);
+  EXPECT_GT(moved, 0.05);
+  EXPECT_LT(std::abs(own.error(all_components(m), w) - moved),
+            0.5 * std::abs(exact.error(all_components(m), w) - moved));
+  const auto rows = [](const Fitting& f) -> Matrix { return f.columns(all_components(10)).values(); };
+  EXPECT_FALSE(is_near(rows(own), rows(exact), 1e-3 * rows(exact).norm()));
+  EXPECT_TRUE(is_same(rows(exact.with_tangents_of(wrong, 0)), rows(exact)));  // nothing trusted, nothing changed
+}
+
+TEST_F(EquilibriumFittingTest, RefittedWeightsBringEquilibriaNearer) {
+  const Matrix Q = equilibrium_poses(reduced, modes, linear);
+  using Model = TetElasticity<StVenantKirchhoff>;
+  Training<Model, NodalBasis> training{
+      .system = std::shared_ptr<const StvkBar>(std::shared_ptr<void>(), &system),
+      .subspace = basis,
+      .rest_stiffness = stiffness,
+      .modes = modes,
+      .fitting = {system.shared_model(), basis, force_metric(ForceNorm::Stiffness, modes), linear},
+      .held_out = {}};
+  const auto select = [&] {
+    return training.with_problem(
+        [](const auto& problem) { return working_components(NnSp{.seed = 3}(problem, 12), "nn-sp"); });
+  };
+  const WorkingComponents before = select();
+  EXPECT_EQ(training.refitted(before).indices, before.indices);  // without equilibria nothing changes
+  EXPECT_TRUE(is_same(training.refitted(before).weights, before.weights));
+
+  training.equilibria.emplace(fitting(Q, 20));
+  const WorkingComponents rough = select(), refit = training.refitted(rough);
+  EXPECT_TRUE(std::ranges::includes(rough.indices, refit.indices));
+  EXPECT_GT(refit.weights.minCoeff(), 0);
+  const auto moved = [&](const WorkingComponents& working) {
+    return this->moved(training.reduced_system(working.indices, working.weights), Q);
+  };
+  EXPECT_LT(moved(refit), 0.97 * moved(rough));
+  EXPECT_LE(moved(refit), moved(before));
+  EXPECT_NEAR(training.equilibria_of(refit).error(refit.indices, refit.weights), moved(refit), 0.3 * moved(refit));
 }
 
 TEST_F(EquilibriumFittingTest, OffersWhatSelectorsAskForOfOneMatrix) {

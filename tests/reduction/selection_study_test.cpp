@@ -64,7 +64,7 @@ TEST(SelectionStudy, PosesTheProblemThatReduceSolves) {
   EXPECT_EQ(selection.indices, model.indices);
   EXPECT_EQ(study().report().dimension, report.dimension);
   EXPECT_EQ(study().measure(selection).held_out, report.held_out);
-  EXPECT_EQ(study().held_out_error(selection.indices, selection.weights), report.held_out_error);
+  EXPECT_EQ(study().held_out_error(model.indices, model.weights), report.held_out_error);
 }
 
 TEST(SelectionStudy, LeavesMotionsWithNegativeWeightsOut) {
