@@ -10,7 +10,6 @@
 #include <io/index_file.hpp>
 #include <io/plot.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -95,7 +94,7 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   json["held_out_error"] = report.held_out_error;
   json["equilibrium_error"] = report.equilibrium_error;
   json["held_out"] = Json::array();
-  const double largest = *std::max_element(options.poses.amplitudes.begin(), options.poses.amplitudes.end());
+  const double largest = options.poses.largest_amplitude();
   for (const auto& [share, error] : report.held_out)
     json["held_out"].push_back({{"share", share}, {"amplitude", share * largest}, {"error", error}});
   json["poses"] = {{"count", report.poses},

@@ -6,9 +6,9 @@
 #include <reduction/equilibrium_fitting.hpp>
 #include <reduction/reduce.hpp>
 #include <sparse/greedy_cubature.hpp>
-#include <sparse/nnls.hpp>
 #include <sparse/smallest_selection.hpp>
 #include <sparse/stacked_problem.hpp>
+#include <sparse/working_set.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -108,9 +108,9 @@ WorkingComponents Training<Model, S>::refitted(const WorkingComponents& working)
   if (!equilibria) return working;
   const auto own = equilibria_of(working);
   const StackedProblem problem(fitting, own);
-  const auto columns = problem.columns(working.indices);
-  const WorkingComponents refit =
-      with_positive_weights(working.indices, Fnnls{}(columns.gram(columns), columns.transpose_times(problem.rhs())).w);
+  WorkingSet chosen(problem);
+  chosen.append(problem.columns(working.indices));
+  const WorkingComponents refit = with_positive_weights(working.indices, chosen.fit());
   if (refit.indices.empty()) return working;
   const bool nearer =
       equilibria_of(refit).error(refit.indices, refit.weights) < own.error(working.indices, working.weights);
@@ -136,7 +136,7 @@ void add_equilibria(const ObjectTraits& object, PoseOptions poses, const ReduceO
     const WorkingComponents working =
         working_components(BatchedGreedy{.seed = options.seed}(training.fitting, size), "batched-greedy");
     const auto system = training.reduced_system(working.indices, working.weights);
-    const double largest = *std::max_element(poses.amplitudes.begin(), poses.amplitudes.end());
+    const double largest = poses.largest_amplitude();
     poses.count = object.equilibria;
     poses.amplitudes = {3 * largest, largest, 0.3 * largest};
     if (object.thin)
@@ -204,7 +204,7 @@ Training<Model, S> train(const ObjectTraits& object, std::shared_ptr<const FullS
   std::vector<std::pair<double, Fitting>> held_out;
   if (options.held_out_poses > 0)
     stage("held-out forces", [&](auto share) {
-      const double largest = *std::max_element(pose_options.amplitudes.begin(), pose_options.amplitudes.end());
+      const double largest = pose_options.largest_amplitude();
       for (const double part : {1.0, 0.3, 0.1}) {
         PoseOptions some = pose_options;
         some.count = options.held_out_poses;
@@ -275,11 +275,11 @@ WorkingComponents select_components(const Training<Model, S>& training, const Se
   });
   report.points = static_cast<Index>(working.indices.size());
   report.selection = std::move(selection.report);
-  report.training_error = training.error(working);
-  report.equilibrium_error = training.equilibria
-                                 ? training.equilibria_of(working).error(working.indices, working.weights)
-                                 : std::numeric_limits<double>::quiet_NaN();
   stage("checks", [&](auto) {
+    report.training_error = training.error(working);
+    report.equilibrium_error = training.equilibria
+                                   ? training.equilibria_of(working).error(working.indices, working.weights)
+                                   : std::numeric_limits<double>::quiet_NaN();
     report.held_out_error = std::numeric_limits<double>::quiet_NaN();
     for (const auto& [part, problem] : training.held_out)
       report.held_out.emplace_back(part, problem.error(working.indices, working.weights));

@@ -12,7 +12,8 @@
 
 namespace supple {
 
-/// A selection, measured with the weights that reduce() would refit. NaN where it was not asked for or cannot be told (motions with negative weights).
+/// A selection, measured with the weights that reduce() would refit. NaN where it was not asked for or cannot be told
+/// (motions with negative weights).
 struct SelectionMeasure {
   std::vector<std::pair<double, double>> held_out;  ///< share of the amplitude (1, 0.3, 0.1) and error
   double softest_eigenvalue = 0;                    ///< of the fitted stiffness at rest, relative to the exact one

@@ -5,6 +5,7 @@
 #include <reduction/pose_sweep.hpp>
 #include <reduction/reduced_modes.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -31,6 +32,8 @@ struct PoseOptions {
   std::vector<double> amplitudes = {0.05, 0.017, 0.005};
   std::optional<InvertedPoses> inverted = {};  ///< none: Keep, or Shrink for laws without energy there
   std::uint64_t seed = 1;
+
+  double largest_amplitude() const { return *std::max_element(amplitudes.begin(), amplitudes.end()); }
 };
 
 struct TrainingPoses {

@@ -72,7 +72,6 @@ TEST_F(StackedProblemTest, GroupsAreThoseOfBothAndNeitherIsEverEmpty) {
 }
 
 TEST_F(StackedProblemTest, IsSolvedAsTheMatrixIs) {
-  const DenseProblem dense(A, b, 1);
   const Selection c = NnSp{.seed = 3}(AnyProblem(stacked), 8);
   ASSERT_LE(c.size(), 8);
   EXPECT_NEAR(c.report.residual, (A(Eigen::all, c.indices) * c.weights - b).norm(), 1e-10 * b.norm());
