@@ -35,6 +35,8 @@ Matrix equilibrium_poses(const System& system, const ReducedModes& modes, Matrix
 /// A BlockFittingProblem, FullGradientProblem and GroupedFittingProblem (groups are poses).
 template <ForceModel Model, Subspace S>
 class EquilibriumFitting {
+  static constexpr int block = S::block;
+
  public:
   using Columns = DenseColumns;
 
@@ -82,15 +84,19 @@ class EquilibriumFitting {
     const Index d = poses().rows(), T = num_groups(), r = rows() / T;
     const auto local = forces_.columns(js);
     Matrix A(rows(), count);
-    constexpr Index at_once = 32;
+    constexpr Index at_once = 48, poses_at_once = 16;  // their forces fit into a core's own cache
     parallel_ranges(count, at_once, [&](Index begin, Index end) {
-      Matrix f(d, T * at_once);  // at pose t, of one component after another
-      for (Index k = begin; k < end; ++k) {
-        const Matrix f_k = local.forces(k);
-        for (Index t = 0; t < T; ++t) f.col(t * at_once + k - begin) = f_k.col(t);
+      Matrix f(d, at_once * poses_at_once);
+      for (Index first = 0; first < T; first += poses_at_once) {
+        const Index some = std::min(poses_at_once, T - first);
+        for (Index k = begin; k < end; ++k)
+          local.forces_by_axis(k, first, f.middleCols((k - begin) * poses_at_once, some));
+        for (Index t = 0; t < some; ++t) {
+          const Eigen::Map<const Matrix, 0, Eigen::OuterStride<>> f_t(f.col(t).data(), d, end - begin,
+                                                                      Eigen::OuterStride<>(d * poses_at_once));
+          A.block((first + t) * r, begin, r, end - begin) = (f_t.transpose() * L_by_axis_[first + t]).transpose();
+        }
       }
-      for (Index t = 0; t < T; ++t)
-        A.block(t * r, begin, r, end - begin).noalias() = scaled_L_[t] * f.middleCols(t * at_once, end - begin);
     });
     return DenseColumns({js.begin(), js.end()}, std::move(A));
   }
@@ -104,7 +110,10 @@ class EquilibriumFitting {
     require_size("r", r.size(), rows());
     const Index rank = rows() / num_groups();
     Matrix pulled(poses().rows(), num_groups());
-    for (Index t = 0; t < num_groups(); ++t) pulled.col(t) = scaled_L_[t].transpose() * r.segment(t * rank, rank);
+    for (Index t = 0; t < num_groups(); ++t) {
+      const Vector by_axis = L_by_axis_[t] * r.segment(t * rank, rank);
+      pulled.col(t) = by_axis.reshaped(pulled.rows() / block, block).transpose().reshaped();
+    }
     return forces_.transpose_times(pulled.reshaped());
   }
   Vector squared_norms() const {
@@ -144,15 +153,15 @@ class EquilibriumFitting {
     b_.resize(r * num_groups());
     for (Index t = 0; t < num_groups(); ++t) {
       const Vector f = forces_.forces().col(t);
-      scaled_L_.push_back(f.norm() * L_[t]);
+      L_by_axis_.push_back(f.norm() * rows_by_axis<block>(L_[t].transpose()));
       b_.segment(t * r, r) = L_[t] * f;
     }
   }
 
   ForceFitting<Model, S> forces_;  // in the norm I: local forces over ‖F̄(q_t)‖
   double softest_, scale_;
-  std::vector<Matrix> L_;         // rank × d for each pose
-  std::vector<Matrix> scaled_L_;  // times ‖F̄(q_t)‖
+  std::vector<Matrix> L_;          // rank × d for each pose
+  std::vector<Matrix> L_by_axis_;  // their transposes times ‖F̄(q_t)‖, rows ordered by axes
   Vector b_;
 };
 

@@ -138,18 +138,15 @@ class ForceFitting {
     Index size() const { return static_cast<Index>(indices_.size()); }
     Index index(Index k) const { return indices_[k]; }
 
-    /// Of column k: f̄(q_t) / ‖L F̄(q_t)‖ in the subspace, d × T; A has L times that.
-    Matrix forces(Index k) const {
-      Matrix result(fitting_->subspace_->dim(), fitting_->num_poses());
+    /// Of column k: f̄(q_t) / ‖L F̄(q_t)‖ in the subspace, at as many poses from `first` on as `out` has columns (d × some).
+    /// Ordered by axes, see rows_by_axis(). A has L times that.
+    void forces_by_axis(Index k, Index first, MatrixOut out) const {
       const auto E = E_.middleRows(k * rows_per_component, rows_per_component);
       for (int x = 0; x < block; ++x) {
-        RowMatrix h(rows_per_component, result.cols());
-        for (int row = 0; row < rows_per_component; ++row)
-          h.row(row) = H_.row(k * local + row * block + x).head(result.cols());
-        const Matrix part = E.transpose() * h;
-        for (Index a = 0; a < part.rows(); ++a) result.row(a * block + x) = part.row(a);
+        const Eigen::Map<const RowMatrix, 0, Eigen::OuterStride<>> h(
+            &H_(k * local + x, first), rows_per_component, out.cols(), Eigen::OuterStride<>(block * H_.cols()));
+        out.middleRows(x * E.cols(), E.cols()) = E.transpose().lazyProduct(h);
       }
-      return result;
     }
 
     Vector times(VectorIn w) const {
@@ -198,10 +195,10 @@ class ForceFitting {
         const Index i0 = t / tiles_j * tile, j0 = t % tiles_j * tile;
         if (symmetric && j0 < i0) return;
         const Index ni = std::min(tile, size() - i0), nj = std::min(tile, other.size() - j0);
-        const Matrix HH =
+        const RowMatrix HH =
             H_.middleRows(i0 * local, ni * local) * other.H_.middleRows(j0 * local, nj * local).transpose();
-        const Matrix DND = fitting_->row_products(E_.middleRows(i0 * rows_per_component, ni * rows_per_component),
-                                                  NE.middleRows(j0 * local, nj * local));
+        const RowMatrix DND = row_products(E_.middleRows(i0 * rows_per_component, ni * rows_per_component),
+                                           NE.middleRows(j0 * local, nj * local));
         for (Index j = 0; j < nj; ++j)
           for (Index i = 0; i < ni; ++i)
             G(i0 + i, j0 + j) = HH.template block<local, local>(i * local, j * local)
@@ -216,11 +213,19 @@ class ForceFitting {
 
     Vector squared_norms() const {
       Vector result(size());
-      parallel_for(size(), [&](Index k) {
-        const RowMatrix E = E_.middleRows(k * rows_per_component, rows_per_component);
-        const Matrix DND = fitting_->row_products(E, fitting_->apply_metric(E));
-        const auto H = H_.middleRows(k * local, local);
-        result[k] = (H * H.transpose()).cwiseProduct(DND).sum();
+      parallel_ranges(size(), 32, [&](Index begin, Index end) {
+        const RowMatrix NE =
+            fitting_->apply_metric(E_.middleRows(begin * rows_per_component, (end - begin) * rows_per_component));
+        for (Index k = begin; k < end; ++k) {
+          const LocalMatrix<local> DND = own_products(E_.middleRows(k * rows_per_component, rows_per_component),
+                                                      NE.middleRows((k - begin) * local, local));
+          const auto H = H_.middleRows(k * local, local);
+          result[k] = 0;
+          for (int a = 0; a < local; ++a) {
+            result[k] += DND(a, a) * H.row(a).squaredNorm();
+            for (int c = 0; c < a; ++c) result[k] += 2 * DND(c, a) * H.row(a).dot(H.row(c));
+          }
+        }
       });
       return result;
     }
@@ -276,6 +281,7 @@ class ForceFitting {
 
  private:
   friend class Columns;
+  using Rows = Eigen::Ref<const RowMatrix>;
 
   ForceFitting(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace,
                std::shared_ptr<const Matrix> metric, const Matrix& Q, Matrix F)
@@ -302,7 +308,8 @@ class ForceFitting {
     packed_Q_ = pack_poses<block>(Q_);
     padded_scale_ = Vector::Zero(packed_Q_.cols() / block);
     padded_scale_.head(num_poses()) = scale_;
-    N_ = metric_->transpose() * *metric_;
+    const Matrix N = metric_->transpose() * *metric_;
+    N_by_axis_ = rows_by_axis<block>(rows_by_axis<block>(N).transpose());
   }
 
   Index padded_poses() const { return padded_scale_.size(); }
@@ -314,25 +321,32 @@ class ForceFitting {
   }
   Matrix pull_back(VectorIn r) const { return pull_back_unscaled(r) * scale_.asDiagonal(); }
 
-  /// D N: one row for each (row of E, x), d columns.
-  RowMatrix apply_metric(const RowMatrix& E) const {
-    RowMatrix result(E.rows() * block, N_.cols());
-    for (int x = 0; x < block; ++x) {
-      const Matrix N_x = N_(Eigen::seqN(x, E.cols(), block), Eigen::all);
-      const RowMatrix part = E * N_x;
-      for (Index row = 0; row < E.rows(); ++row) result.row(row * block + x) = part.row(row);
-    }
+  /// D N: one row for each (row of E, x), d columns, ordered by axes.
+  RowMatrix apply_metric(const Rows& E) const {
+    RowMatrix result(E.rows() * block, N_by_axis_.cols());
+    for (int x = 0; x < block; ++x)
+      every_block_row(result, x).noalias() = E * N_by_axis_.middleRows(x * E.cols(), E.cols());
     return result;
   }
   /// D (D' N)ᵀ for rows E of D and NE = D' N.
-  Matrix row_products(const RowMatrix& E, const RowMatrix& NE) const {
-    Matrix result(E.rows() * block, NE.rows());
-    for (int x = 0; x < block; ++x) {
-      const RowMatrix NE_x = NE(Eigen::all, Eigen::seqN(x, E.cols(), block));
-      const RowMatrix part = E * NE_x.transpose();
-      for (Index row = 0; row < E.rows(); ++row) result.row(row * block + x) = part.row(row);
-    }
+  static RowMatrix row_products(const Rows& E, const Rows& NE) {
+    RowMatrix result(E.rows() * block, NE.rows());
+    for (int x = 0; x < block; ++x)
+      every_block_row(result, x).noalias() = E * NE.middleCols(x * E.cols(), E.cols()).transpose();
     return result;
+  }
+  /// The same for a component and itself.
+  static LocalMatrix<local> own_products(const Rows& E, const Rows& NE) {
+    LocalMatrix<local> result;
+    for (int x = 0; x < block; ++x)
+      result(Eigen::seqN(x, Eigen::fix<rows_per_component>, Eigen::fix<block>), Eigen::all) =
+          E.lazyProduct(NE.middleCols(x * E.cols(), E.cols()).transpose());
+    return result;
+  }
+  /// Rows x, block + x, …
+  static auto every_block_row(RowMatrix& M, int x) {
+    return Eigen::Map<RowMatrix, 0, Eigen::OuterStride<>>(M.row(x).data(), M.rows() / block, M.cols(),
+                                                          Eigen::OuterStride<>(block * M.cols()));
   }
 
   /// Σ over poses of body(D N Dᵀ, scaled or plain f, y) for each component; y are fields of `packed`, if
@@ -351,7 +365,7 @@ class ForceFitting {
           E.middleRows((i - begin) * rows_per_component, rows_per_component) = component_rows(*model_, *subspace_, i);
         const RowMatrix NE = apply_metric(E);
         for (Index i = begin; i < end; ++i)
-          DND[i] = row_products(E.middleRows((i - begin) * rows_per_component, rows_per_component),
+          DND[i] = own_products(E.middleRows((i - begin) * rows_per_component, rows_per_component),
                                 NE.middleRows((i - begin) * local, local));
       });
     }
@@ -400,7 +414,7 @@ class ForceFitting {
   Vector scale_, b_;
   RowMatrix packed_Q_;
   Vector padded_scale_;
-  Matrix N_;  // LᵀL
+  RowMatrix N_by_axis_;  // LᵀL, rows and columns ordered by axes
   std::shared_ptr<Norms> norms_ = std::make_shared<Norms>();
 };
 

@@ -38,6 +38,15 @@ Matrix unpack_poses(const RowMatrix& packed, Index num_poses) {
   return Q;
 }
 
+/// Rows ordered by axes: coordinate x of field a, row a block + x of M, becomes row x p + a of p block rows.
+template <int block>
+Matrix rows_by_axis(MatrixIn M) {
+  Matrix result(M.rows(), M.cols());
+  const Index p = M.rows() / block;
+  for (int x = 0; x < block; ++x) result.middleRows(x * p, p) = M(Eigen::seqN(x, p, block), Eigen::all);
+  return result;
+}
+
 /// Doubles aligned for packs.
 using AlignedBuffer = std::vector<double, Eigen::aligned_allocator<double>>;
 

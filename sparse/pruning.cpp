@@ -33,23 +33,37 @@ std::vector<Index> prune(MatrixIn gram, VectorIn weights, Index size, const std:
     H = factor.solve(Matrix::Identity(n, n));
     w = w.cwiseQuotient(scale);
 
+    Vector diagonal = H.diagonal();
+    Matrix V(n, 32);  // downdates of H that wait for their turn: H − V diag(v)⁻¹ Vᵀ is meant
+    Vector v(V.cols());
+    Index waiting = 0;
     for (; n > size; --n) {
       Index k = -1;
       double least = 0;
       for (Index i = 0; i < n; ++i) {
         if (fixed[active[i]]) continue;
-        const double loss = w[i] > 0 ? w[i] * w[i] / H(i, i) : w[i];
+        const double loss = w[i] > 0 ? w[i] * w[i] / diagonal[i] : w[i];
         if (k < 0 || loss < least) k = i, least = loss;
       }
       if (k < 0) break;  // all that is left is fixed
       // The last one takes the place of column k, and the leading blocks are downdated.
-      const Vector h = H.col(k).head(n);
+      Vector h = H.col(k).head(n);
+      h.noalias() -= V.topLeftCorner(n, waiting) * V.row(k).head(waiting).transpose().cwiseQuotient(v.head(waiting));
       w.head(n) -= h * (w[k] / h[k]);
-      H.topLeftCorner(n, n).noalias() -= (h / h[k]) * h.transpose();
+      diagonal.head(n) -= h.cwiseAbs2() / h[k];
+      V.col(waiting).head(n) = h;
+      v[waiting++] = h[k];
       H.col(k).head(n) = H.col(n - 1).head(n);
       H.row(k).head(n) = H.row(n - 1).head(n);
+      V.row(k) = V.row(n - 1);
+      diagonal[k] = diagonal[n - 1];
       w[k] = w[n - 1];
       active[k] = active[n - 1];
+      if (waiting == V.cols()) {
+        H.topLeftCorner(n - 1, n - 1).noalias() -=
+            V.topRows(n - 1) * v.cwiseInverse().asDiagonal() * V.topRows(n - 1).transpose();
+        waiting = 0;
+      }
     }
     active.resize(n);
   }

@@ -2,6 +2,7 @@ supple_test(fitting_problem LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/fitting
 supple_test(stacked_problem LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/stacked_problem_test.cpp LINKS supple::sparse)
 supple_test(nnls LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/nnls_test.cpp LINKS supple::sparse)
 supple_test(nn_htp LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/nn_htp_test.cpp LINKS supple::sparse)
+supple_test(pruning LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/pruning_test.cpp LINKS supple::sparse)
 supple_test(exchanging LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/exchanging_test.cpp LINKS supple::sparse)
 supple_test(selectors LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/selectors_test.cpp LINKS supple::sparse)
 supple_test(nnls_adversarial LABEL unit SOURCES ${CMAKE_CURRENT_LIST_DIR}/nnls_adversarial_test.cpp LINKS supple::sparse)
