@@ -138,8 +138,8 @@ class ForceFitting {
     Index size() const { return static_cast<Index>(indices_.size()); }
     Index index(Index k) const { return indices_[k]; }
 
-    /// Of column k: f̄(q_t) / ‖L F̄(q_t)‖ in the subspace, at as many poses from `first` on as `out` has columns (d × some).
-    /// Ordered by axes, see rows_by_axis(). A has L times that.
+    /// Of column k: f̄(q_t) / ‖L F̄(q_t)‖ in the subspace, at as many poses from `first` on as `out` has columns (d rows,
+    /// ordered by axes, see rows_by_axis()). A has L times that.
     void forces_by_axis(Index k, Index first, MatrixOut out) const {
       const auto E = E_.middleRows(k * rows_per_component, rows_per_component);
       for (int x = 0; x < block; ++x) {

@@ -46,6 +46,15 @@ TEST_F(PlotTest, SvgShowsTitleLabelsAndLegend) {
   EXPECT_THAT(text, HasSubstr("</svg>"));
 }
 
+TEST_F(PlotTest, LogAxesOfLessThanTwoPowersOfTenHaveMoreNumbersThanThose) {
+  SKIP_WITHOUT_GNUPLOT;
+  plot.y.scale = Scale::Log;
+  plot.series[0].y *= 1e-3;  // 0.002 to 0.009
+  for (const char* number : {"0.002", "0.005"}) EXPECT_THAT(svg(), HasSubstr(number));
+  plot.series[0].y[0] = 10;  // four powers of ten
+  EXPECT_THAT(svg(), Not(HasSubstr("0.002")));
+}
+
 TEST_F(PlotTest, PngHasTheSizeThatWasAskedFor) {
   SKIP_WITHOUT_GNUPLOT;
   plot.width = 320;
