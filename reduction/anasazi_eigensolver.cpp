@@ -11,6 +11,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <sstream>
 #include <string>
 
 namespace supple {
@@ -59,15 +60,20 @@ StandardProblem standard_problem(const SparseMatrix& K, const Vector& M_diagonal
   problem.A.makeCompressed();
   require(problem.A.coeffs().allFinite(), "smallest_eigenpairs: K has an entry that is not finite");
   const Vector scale = M_diagonal.cwiseSqrt().cwiseInverse();
-  for (Index j = 0; j < n; ++j) {
-    double column_sum = 0;
+  Vector column_sums = Vector::Zero(n);
+  for (Index j = 0; j < n; ++j)
     for (SparseMatrix::InnerIterator entry(problem.A, j); entry; ++entry) {
       entry.valueRef() *= scale[entry.row()] * scale[j];
-      column_sum += std::abs(entry.value());
+      column_sums[j] += std::abs(entry.value());
     }
-    problem.norm = std::max(problem.norm, column_sum);
+  problem.norm = column_sums.maxCoeff<Eigen::PropagateNaN>();
+  require(K.nonZeros() > 0 && K.coeffs().cwiseAbs().maxCoeff() > 0, "smallest_eigenpairs: K is zero");
+  if (!(1e-120 < problem.norm && problem.norm < 1e120)) {  // squares of it would leave the range of numbers
+    std::ostringstream norm;
+    norm << problem.norm;
+    throw InputError("stiffness over mass is " + norm.str() +
+                     " 1/s², expected 1e-120 to 1e120; are the units of stiffness and density right?");
   }
-  require(problem.norm > 0, "smallest_eigenpairs: K is zero");
   Random random(0);
   Matrix probes(n, 2);
   for (double& value : probes.reshaped()) value = random.normal();

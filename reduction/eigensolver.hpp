@@ -53,6 +53,7 @@ struct EigenPairs {
 ///         MaxIterations, with those pairs that were found: maybe fewer than num_modes.
 /// \throws std::invalid_argument if sizes differ, K is zero, not symmetric or not finite, a mass is not
 ///         positive, rigid has energy, or num_modes is outside [1, n − rank(rigid)].
+/// \throws InputError if K over M is not between 1e-120 and 1e120 1/s²: wrong units, most likely.
 /// \throws SolverError if K + σ M is not positive definite: K has negative eigenvalues.
 /// \note One factorisation (two if the first shift fits badly), 4 to 7 solves a mode, O(n num_modes) memory.
 /// \see Stewart 2001 and Zhou & Saad 2008 (block Krylov–Schur); Baker et al. 2009 (Anasazi).

@@ -451,5 +451,18 @@ TEST(Eigensolver, NamesTheCallersMistake) {
   EXPECT_THROW(static_cast<void>(smallest_eigenpairs(indefinite, M, none, options)), SolverError);
 }
 
+TEST(Eigensolver, RefusesUnitsThatLeaveTheRangeOfNumbers) {
+  const SparseMatrix K = laplacian(500);
+  for (const double mass : {1e-308, 1e-200, 1e200}) try {
+      static_cast<void>(smallest_eigenpairs(K, Vector::Constant(500, mass), Matrix(500, 0)));
+      ADD_FAILURE() << "accepted: " << mass;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("units"), std::string::npos) << error.what();
+    }
+  for (const double mass : {1e-50, 1e50})
+    EXPECT_NEAR(smallest_eigenpairs(K, Vector::Constant(500, mass), Matrix(500, 0)).omega_squared[0] * mass,
+                smallest_eigenpairs(K, Vector::Ones(500), Matrix(500, 0)).omega_squared[0], 1e-10);
+}
+
 }  // namespace
 }  // namespace supple
