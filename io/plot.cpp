@@ -142,8 +142,10 @@ std::string emptiest_corner(const Plot& plot) {
   return best;
 }
 
-/// Where numbers stand on a log axis that spans less than two powers of ten: there those alone would leave it all but bare.
-std::vector<double> narrow_log_ticks(const Plot& plot, const Axis& axis, Vector PlotSeries::*values) {
+/// The axis, whose coordinates are these `values` of the series, with numbers where it is logarithmic and spans less than
+/// two powers of ten: those alone would leave it all but bare.
+Axis with_ticks(const Plot& plot, Axis axis, Vector PlotSeries::*values) {
+  if (axis.scale == Scale::Linear || !axis.ticks.empty()) return axis;
   double low = std::numeric_limits<double>::infinity(), high = 0;
   for (const PlotSeries& series : plot.series)
     for (Index k = 0; k < series.x.size(); ++k)
@@ -153,12 +155,11 @@ std::vector<double> narrow_log_ticks(const Plot& plot, const Axis& axis, Vector 
       }
   low = axis.low.value_or(low);
   high = axis.high.value_or(high);
-  std::vector<double> ticks;
   if (high < 100 * low)
     for (double power = std::pow(10, std::floor(std::log10(low))); power <= high; power *= 10)
       for (const double tick : {power, 2 * power, 5 * power})
-        if (0.5 * low <= tick && tick <= 2 * high) ticks.push_back(tick);
-  return ticks;
+        if (0.5 * low <= tick && tick <= 2 * high) axis.ticks.push_back(tick);
+  return axis;
 }
 
 std::string axis_commands(const char* name, const Axis& axis) {
@@ -207,10 +208,8 @@ std::string script(const Plot& plot, const std::string& terminal) {
       "set lmargin 11\nset rmargin 3\nset datafile missing 'NaN'\n";
   if (!plot.title.empty())
     commands += "set title " + gnuplot_string(plot.title) + " noenhanced font 'Helvetica,17' textcolor rgb '#202020'\n";
-  Axis x = plot.x, y = plot.y;
-  if (x.scale == Scale::Log && x.ticks.empty()) x.ticks = narrow_log_ticks(plot, x, &PlotSeries::x);
-  if (y.scale == Scale::Log && y.ticks.empty()) y.ticks = narrow_log_ticks(plot, y, &PlotSeries::y);
-  commands += axis_commands("x", x) + axis_commands("y", y);
+  commands += axis_commands("x", with_ticks(plot, plot.x, &PlotSeries::x));
+  commands += axis_commands("y", with_ticks(plot, plot.y, &PlotSeries::y));
 
   std::string curves;
   for (std::size_t k = 0; k < plot.series.size(); ++k) {

@@ -28,13 +28,6 @@ struct NormalEquations {
   double error(const std::vector<Index>& positions) const { return (b - A * fit(positions)).norm(); }
 };
 
-std::vector<Index> positive(const Vector& w) {
-  std::vector<Index> result;
-  for (Index k = 0; k < w.size(); ++k)
-    if (w[k] > 0) result.push_back(k);
-  return result;
-}
-
 TEST(Exchange, EndsWhereNoPairThatKeepsAllWeightsPositiveLowersTheError) {
   for (std::uint64_t seed : {1, 2, 3, 4, 5}) {
     const NormalEquations problem(40, 20, seed);

@@ -57,6 +57,14 @@ inline DenseProblem force_fitting_on_a_cube(Index p, Index T, Index m, std::uint
   return {std::move(A), std::move(b), 3 * p};
 }
 
+/// Where w is positive.
+inline std::vector<Index> positive(const Vector& w) {
+  std::vector<Index> result;
+  for (Index k = 0; k < w.size(); ++k)
+    if (w[k] > 0) result.push_back(k);
+  return result;
+}
+
 /// The least that is a FittingProblem, over a matrix.
 class ColumnsOnly {
  public:

@@ -40,18 +40,12 @@ struct PruneTest : testing::Test {
   const Matrix G = A.transpose() * A;
   const Vector w = Fnnls{}(G, A.transpose() * b).w;
   const std::vector<char> none = std::vector<char>(60, 0);
-  std::vector<Index> weighted() const {
-    std::vector<Index> result;
-    for (Index k = 0; k < w.size(); ++k)
-      if (w[k] > 0) result.push_back(k);
-    return result;
-  }
 };
 
 TEST_F(PruneTest, TakesTheColumnThatIsMissedLeastEachTime) {
-  ASSERT_GT(weighted().size(), 50u);
+  ASSERT_GT(positive(w).size(), 50u);
   for (const Index size : {50, 40, 23, 3, 1})
-    EXPECT_EQ(prune(G, w, size, none), eliminated(weighted(), static_cast<std::size_t>(size))) << size;
+    EXPECT_EQ(prune(G, w, size, none), eliminated(positive(w), static_cast<std::size_t>(size))) << size;
 }
 
 TEST_F(PruneTest, LeavesFixedColumnsWithAWeightOrWithout) {
@@ -60,14 +54,14 @@ TEST_F(PruneTest, LeavesFixedColumnsWithAWeightOrWithout) {
   std::vector<Index> without;
   for (Index k = 0; k < w.size(); ++k)
     if (fixed[k] && !(w[k] > 0)) without.push_back(k);
-  std::vector<Index> expected = eliminated(weighted(), 20 - without.size(), fixed);
+  std::vector<Index> expected = eliminated(positive(w), 20 - without.size(), fixed);
   expected.insert(expected.end(), without.begin(), without.end());
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(prune(G, w, 20, fixed), expected);
 }
 
 TEST_F(PruneTest, TakesOnlyWhatHasNoWeightWhereThereIsRoom) {
-  EXPECT_EQ(prune(G, w, 60, none), weighted());
+  EXPECT_EQ(prune(G, w, 60, none), positive(w));
 }
 
 // Two equal columns: one of them is enough, and the Gram matrix is singular to rounding.
