@@ -16,7 +16,7 @@ template <DynamicalSystem System>
 Matrix equilibrium_poses(const System& system, const ReducedModes& modes, MatrixIn Q) {
   const auto rigid = modes.Phi.leftCols(modes.num_zero);
   Matrix springs;
-  if (modes.num_zero > 0) springs = std::pow(modes.positive_omega()[0], 2) * rigid * rigid.transpose();
+  if (modes.num_zero > 0) springs = modes.softest_stiffness() * rigid * rigid.transpose();
   Matrix poses = Q;
   parallel_for(Q.cols(), [&](Index t) {
     StaticSolver solver(system, {.tolerance = 1e-4, .max_iterations = 60});
@@ -29,7 +29,7 @@ Matrix equilibrium_poses(const System& system, const ReducedModes& modes, Matrix
 
 /// Rows of how far errors of the force move an object that is in equilibrium: of component i at pose t
 ///   Lₜ f̄ᵢ(q_t),  Lₜ = Λ⁻¹ Vᵀ / ‖q_t‖
-/// with the `rank` softest eigenpairs of the tangent there (not at rest: large poses are stiffer here and softer there).
+/// with the `rank` softest eigenpairs of the tangent there (not at rest: poses are stiffer here and softer there).
 /// At rest under loads stiff modes have relaxed; forces are small, and errors that drown in those of random poses
 /// displace soft modes. Equal to ‖Δq‖ / ‖q_t‖ for small errors Δf̄ = K̄(q_t) Δq along these modes.
 /// A BlockFittingProblem, FullGradientProblem and GroupedFittingProblem (groups are poses).
@@ -57,8 +57,8 @@ class EquilibriumFitting {
     complete();
   }
 
-  /// The same poses by the tangents of a fitted system. Errors of the fit couple soft modes to stiff ones, which makes the
-  /// object softer than its errors along soft modes tell; its own tangents tell. Poses at which they say that it is
+  /// The same poses by the tangents of a fitted system. Errors of the fit couple soft modes to stiff ones, which makes
+  /// the object softer than its errors along soft modes tell; its own tangents tell. Poses at which they say that it is
   /// displaced by more than `trusted` of the pose, where the response is not linear, keep their rows.
   /// \param system  of the same subspace.
   template <DynamicalSystem System>

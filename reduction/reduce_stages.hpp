@@ -151,7 +151,7 @@ void add_equilibria(const ObjectTraits& object, PoseOptions poses, const ReduceO
     const double share = static_cast<double>(training.fitting.num_poses()) / static_cast<double>(object.equilibria);
     training.equilibria.emplace(
         model, training.subspace, relaxed, [&](VectorIn q) { return system.stiffness(q); },
-        std::pow(training.modes.positive_omega()[0], 2), 20 + training.modes.num_zero, std::sqrt(share));
+        training.modes.softest_stiffness(), 20 + training.modes.num_zero, std::sqrt(share));
   } else {
     require(false, "equilibria need forces with a potential");
   }

@@ -27,4 +27,9 @@ Vector ReducedModes::positive_omega() const {
   return result;
 }
 
+double ReducedModes::softest_stiffness() const {
+  require(num_zero < omega.size(), "the reduced stiffness is zero");
+  return omega[num_zero] * omega[num_zero];
+}
+
 }  // namespace supple

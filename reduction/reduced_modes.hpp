@@ -27,6 +27,8 @@ struct ReducedModes {
 
   /// ω̄ with the energy-free modes given the lowest frequency that is not zero, so that it can be divided by.
   Vector positive_omega() const;
+  /// The lowest eigenvalue that is not zero [1/s²].
+  double softest_stiffness() const;
 };
 /// \param num_rigid  how many motions have no energy, where that is known. Otherwise those with ω̄ up to 1e-5 of
 /// the largest count, which a very stiff part can push a flexible mode below.

@@ -36,13 +36,8 @@ struct EquilibriumFittingTest : testing::Test {
         .Q;
   }
   Fitting fitting(const Matrix& Q, Index rank, double scale = 1) const {
-    return {system.shared_model(),
-            basis,
-            Q,
-            [&](VectorIn q) { return reduced.stiffness(q); },
-            std::pow(modes.positive_omega()[0], 2),
-            rank,
-            scale};
+    return {system.shared_model(),     basis, Q,    [&](VectorIn q) { return reduced.stiffness(q); },
+            modes.softest_stiffness(), rank,  scale};
   }
 
   /// Root mean square over the poses of how far their equilibria move in another system, relative.
@@ -162,7 +157,7 @@ TEST_F(FreeEquilibriumFittingTest, FreeObjectsAreHeldBySoftSprings) {
   ASSERT_EQ(modes.num_zero, 6);
   const Matrix Q = equilibrium_poses(reduced, modes, linear_responses(0.05));
   const auto rigid = modes.Phi.leftCols(6);
-  const double k = std::pow(modes.positive_omega()[0], 2);
+  const double k = modes.softest_stiffness();
   for (Index t = 0; t < Q.cols(); ++t) {
     const Vector load = stiffness * linear_responses(0.05).col(t);
     const Vector rest = reduced.force(Q.col(t)) + k * rigid * (rigid.transpose() * Q.col(t)) - load;

@@ -156,7 +156,9 @@ TEST(ReducedModes, DiagonalizeTheReducedStiffness) {
   const Vector positive = modes.positive_omega();
   EXPECT_TRUE(is_same(positive.head(6), Vector::Constant(6, modes.omega[6])));
   EXPECT_TRUE(is_same(positive.tail(d - 6), modes.omega.tail(d - 6)));
+  EXPECT_EQ(modes.softest_stiffness(), positive[0] * positive[0]);
   EXPECT_THROW((void)reduced_modes(Matrix::Zero(3, 3)).positive_omega(), std::invalid_argument);
+  EXPECT_THROW((void)reduced_modes(Matrix::Zero(3, 3)).softest_stiffness(), std::invalid_argument);
 }
 
 TEST(VibrationModes, OfACantileverFallTowardsTheBeamUnderRefinement) {
