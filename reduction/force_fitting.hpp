@@ -73,6 +73,8 @@ class ForceFitting {
   }
 
   Columns columns(std::span<const Index> js) const { return Columns(*this, js); }
+  /// Its local forces, and its rows of U.
+  Index numbers_per_column() const { return local * padded_poses() + rows_per_component * subspace_->num_fields(); }
 
   /// ε of a selection on these poses, Eq. 5.
   double error(std::span<const Index> indices, VectorIn weights) const {

@@ -41,6 +41,7 @@ class ActiveSet {
   Indices passive;
   Vector x, g;
   Index iterations = 0;
+  bool refused = false;  ///< has a column ever stayed out because it depends on others, to the factor's digits?
 
   /// \param gradient_tolerance  relative to factor.scale().
   ActiveSet(Factor&& unit_columns, double gradient_tolerance, Index largest_iterations)
@@ -89,13 +90,19 @@ class ActiveSet {
   Index size() const { return factor.cols(); }
 
   bool add(Index i) {
-    if (dependent_[i] || factor.is_zero(i) || !factor.append(passive, i)) {
-      dependent_[i] = 1;
+    if (dependent_[i]) return false;
+    if (factor.is_zero(i) || !factor.append(passive, i)) {
+      refuse(i);
       return false;
     }
     passive.push_back(i);
     in_set_[i] = 1;
     return true;
+  }
+
+  void refuse(Index i) {
+    dependent_[i] = 1;
+    refused = refused || !factor.is_zero(i);
   }
 
   void remove_at(Index k) {
@@ -206,7 +213,7 @@ class ActiveSet {
       Vector z = minimiser();
       if (z[best] <= 0 || !factor.last_matters()) {
         remove_at(static_cast<Index>(passive.size()) - 1);
-        dependent_[best] = 1;
+        refuse(best);
         continue;
       }
       while (std::any_of(passive.begin(), passive.end(), [&](Index i) { return z[i] <= 0; })) {

@@ -73,6 +73,7 @@ class AnyProblem {
   const Vector& rhs() const { return self_->rhs(); }
   void column(Index j, VectorOut out) const { self_->column(j, out); }
   AnyColumns columns(std::span<const Index> js) const { return self_->columns(js); }
+  Index numbers_per_column() const { return self_->numbers_per_column(); }
   Vector transpose_times(VectorIn r) const { return self_->transpose_times(r); }
   Vector squared_norms() const { return self_->squared_norms(); }
   Index num_groups() const { return self_->num_groups(); }
@@ -86,6 +87,7 @@ class AnyProblem {
     virtual const Vector& rhs() const = 0;
     virtual void column(Index j, VectorOut out) const = 0;
     virtual AnyColumns columns(std::span<const Index> js) const = 0;
+    virtual Index numbers_per_column() const = 0;
     virtual Vector transpose_times(VectorIn r) const = 0;
     virtual Vector squared_norms() const = 0;
     virtual Index num_groups() const = 0;
@@ -100,6 +102,7 @@ class AnyProblem {
     const Vector& rhs() const override { return problem->rhs(); }
     void column(Index j, VectorOut out) const override { problem->column(j, out); }
     AnyColumns columns(std::span<const Index> js) const override { return AnyColumns(columns_of(*problem, js)); }
+    Index numbers_per_column() const override { return supple::numbers_per_column(*problem); }
     Vector transpose_times(VectorIn r) const override { return problem->transpose_times(r); }
     Vector squared_norms() const override { return problem->squared_norms(); }
     Index num_groups() const override { return problem->num_groups(); }

@@ -141,6 +141,7 @@ class DenseProblem {
   const Matrix& matrix() const { return A_; }
   const Vector& rhs() const { return b_; }
   void column(Index j, VectorOut out) const { out = A_.col(j); }
+  Index numbers_per_column() const { return 0; }  ///< none beside A
   GatheredColumns columns(std::span<const Index> js) const { return {{js.begin(), js.end()}, A_}; }
   Vector transpose_times(VectorIn r) const;
   Vector squared_norms() const;
@@ -165,6 +166,17 @@ auto columns_of(const P& problem, std::span<const Index> js) {
     for (Index k = 0; k < columns.cols(); ++k) problem.column(js[k], columns.col(k));
     return DenseColumns({js.begin(), js.end()}, std::move(columns));
   }
+}
+
+/// How many numbers an evaluated column keeps: as many as the problem has rows, if it does not say so itself.
+template <FittingProblem P>
+Index numbers_per_column(const P& problem) {
+  if constexpr (requires {
+                  { problem.numbers_per_column() } -> std::convertible_to<Index>;
+                })
+    return problem.numbers_per_column();
+  else
+    return problem.rows();
 }
 
 /// The block that columns_of(problem, …) returns.

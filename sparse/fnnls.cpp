@@ -55,13 +55,14 @@ void require_normal_equations(MatrixIn gram, VectorIn atb) {
 }
 
 NnlsSolution not_finite(Index n) {
-  NnlsSolution solution{Vector::Zero(n), {{}, UpdatableCholesky(0), Vector::Zero(n)}, {}};
+  NnlsSolution solution{Vector::Zero(n), {{}, UpdatableCholesky(0), Vector::Zero(n)}, false, {}};
   solution.report.status = Status::NotFinite;
   return solution;
 }
 
 NnlsSolution solution_of(ActiveSet<GramFactor>&& set, const Vector& scale, Report report) {
-  return {set.x.cwiseProduct(scale), {std::move(set.passive), std::move(set.factor.cholesky), scale}, report};
+  return {
+      set.x.cwiseProduct(scale), {std::move(set.passive), std::move(set.factor.cholesky), scale}, set.refused, report};
 }
 
 }  // namespace

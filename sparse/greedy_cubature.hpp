@@ -14,7 +14,7 @@ namespace supple {
 /// \note s NNLS problems; O(|C| rows) for entries of A a step, or |C| + size times the rows of T_s groups.
 /// \see An, Kim & James 2008, Optimizing cubature for efficient integration of subspace deformations.
 struct GreedyCubature {
-  double tolerance = 0;    ///< stop at this relative error, if the request has no larger one
+  double tolerance = 0;    ///< stop at this relative error, if the request has none
   Index candidates = 100;  ///< |C|, drawn anew in each step; An et al.: 100 to 1000
   /// T_s: groups of rows to train on, where the problem has groups; An et al.: 10; 0: all
   Index subset_groups = 0;
@@ -93,7 +93,7 @@ struct GreedyCubature {
 /// Adds several columns between two NNLS solves: the best directions among candidates drawn at random.
 /// \see Kim & Delaney 2013, Subspace fluid re-simulation.
 struct BatchedGreedy {
-  double tolerance = 0;  ///< stop at this relative error, if the request has no larger one
+  double tolerance = 0;  ///< stop at this relative error, if the request has none
   /// share of s that joins in each step; fewer: smaller error, more NNLS problems
   double added_per_size = 0.1;
   double candidates_per_added = 10;  ///< drawn anew in each step; few: less alike, many: better directions

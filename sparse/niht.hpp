@@ -20,12 +20,14 @@ enum class NihtStep {
 /// w ← H_s(w − μ g), Eq. 7: the baseline of the family, with weights of any sign. Returns the best iterate.
 /// \note one Aᵀ r over the columns considered, and O(rows s) operations, an iteration.
 struct Niht {
-  double tolerance = 0;        ///< stop at this relative error, if the request has no larger one
+  double tolerance = 0;        ///< stop at this relative error, if the request has none
   Index max_iterations = 300;  ///< convergence is linear: more for ill-conditioned columns
   /// c/s, drawn anew in each iteration
   double candidates_per_size = std::numeric_limits<double>::infinity();
   NihtStep step = NihtStep::Normalized;
+  Index patience = 10;  ///< stop after so many draws in a row that change nothing
   std::uint64_t seed = 0;
+  static constexpr Signs signs = Signs::Any;
 
   template <FittingProblem P>
   Selection operator()(const P& problem, const SelectionRequest& request) const;
@@ -37,6 +39,7 @@ struct NnNiht {
   Index max_iterations = 300;
   double candidates_per_size = std::numeric_limits<double>::infinity();
   NihtStep step = NihtStep::Normalized;
+  Index patience = 10;
   std::uint64_t seed = 0;
 
   template <FittingProblem P>
@@ -56,7 +59,7 @@ Selection iterative_hard_thresholding(const Options& options, Signs signs, const
   Vector w = X.fit(signs, all_positions(X.size())).w;
   Vector r = run.record(X, w);
 
-  Index iterations = 0;
+  Index iterations = 0, unchanged = 0;
   const auto finish = [&](Status status, const char* reason) {
     return run.finish(X, status, iterations, reason, FinalWeights::AsTheyAre, signs);
   };
@@ -64,7 +67,8 @@ Selection iterative_hard_thresholding(const Options& options, Signs signs, const
     if (run.met(options.tolerance)) return finish(Status::Converged, "target error reached");
     run.tell(iterations, options.max_iterations);
 
-    const Scan<P> drawn = run.scan(random.sample(run.rules.eligible_without(X.indices()), c), r);
+    const std::vector<Index> rest = run.rules.eligible_without(X.indices());
+    const Scan<P> drawn = run.scan(random.sample(rest, c), r);
     const std::vector<Index> entering = hard_threshold(signs, drawn.correlations, s);
     const ColumnsOf<P> fresh = run.columns(drawn, entering);  // S = X ∪ fresh, Eq. 8
     const Index n = X.size();
@@ -76,9 +80,8 @@ Selection iterative_hard_thresholding(const Options& options, Signs signs, const
     p << X.block().transpose_times(r), drawn.correlations(entering);
     w_S << w, Vector::Zero(fresh.size());
     Vector along = p;  // p_S
-    if (normalized && p.head(n).norm() > 1e-12 * p.norm()) along.tail(fresh.size()).setZero();
-    if (along.norm() == 0) return finish(run.status_at_size(), "the gradient vanishes");
-    double mu = (options.step == NihtStep::Paper ? 2 : 1) * along.squaredNorm() / A_S(along).squaredNorm();
+    if (normalized && p.head(n).stableNorm() > 1e-12 * p.stableNorm()) along.tail(fresh.size()).setZero();
+    double mu = (options.step == NihtStep::Paper ? 2 : 1) * minimising_step(along, A_S);
 
     Vector w_next, change;
     std::vector<Index> kept, chosen;
@@ -93,9 +96,16 @@ Selection iterative_hard_thresholding(const Options& options, Signs signs, const
       std::tie(kept, chosen) = split_at(n, support);
       change = w_next - w_S;
       const bool same_support = chosen.empty() && static_cast<Index>(kept.size()) == n;
-      if (!normalized || same_support || mu * A_S(change).squaredNorm() <= 0.99 * change.squaredNorm()) break;
+      const bool too_long = std::sqrt(mu) * A_S(change).norm() > std::sqrt(0.99) * change.stableNorm();
+      if (!normalized || same_support || !too_long) break;
     }
-    if (change.norm() <= 1e-12 * w_next.norm()) return finish(run.status_at_size(), "the weights do not change");
+    if (!(change.stableNorm() > 1e-12 * w_next.stableNorm())) {
+      if (drawn.size() == static_cast<Index>(rest.size()))
+        return finish(run.status_at_size(), "the weights do not change");
+      if (++unchanged >= options.patience) return finish(Status::Stagnated, "repeated draws change nothing");
+      continue;
+    }
+    unchanged = 0;
 
     X.keep(kept);
     X.append(fresh.subset(chosen));

@@ -1,5 +1,6 @@
 #include <core/check.hpp>
 #include <sparse/nlopt_nnls.hpp>
+#include <sparse/power_scaling.hpp>
 
 #include <nlopt.hpp>
 
@@ -57,9 +58,10 @@ NnlsFit QuasiNewtonNnls::operator()(MatrixIn A, VectorIn b) const {
   fit.report.status = Status::Converged;
   if (n == 0 || b_norm == 0) return fit;
 
-  const Vector scale = norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0; });
-  const Matrix unit = A * scale.asDiagonal();
-  Objective objective{unit.transpose() * unit, unit.transpose() * (b / b_norm)};
+  const PowerScaling scaled(A, b, norms, b_norm);
+  const Vector scale = scaled.A.colwise().norm().transpose().unaryExpr([](double x) { return x > 0 ? 1 / x : 0; });
+  const Matrix unit = scaled.A * scale.asDiagonal();
+  Objective objective{unit.transpose() * unit, unit.transpose() * scaled.b};
 
   nlopt::opt optimizer(algorithm(method), static_cast<unsigned>(n));
   optimizer.set_min_objective(Objective::evaluate, &objective);
@@ -77,8 +79,8 @@ NnlsFit QuasiNewtonNnls::operator()(MatrixIn A, VectorIn b) const {
     status = Status::Stagnated;
   }
 
-  const Vector z = Eigen::Map<const Vector>(x.data(), n).cwiseMax(0) * b_norm;
-  const Vector r = b - unit * z, g = unit.transpose() * r;
+  const Vector z = Eigen::Map<const Vector>(x.data(), n).cwiseMax(0);
+  const Vector r = scaled.b - unit * z, g = unit.transpose() * r;
   double worst = 0;
   for (Index i = 0; i < n; ++i) {
     worst = std::max(worst, z[i] > 0 ? std::abs(g[i]) : g[i]);
@@ -86,8 +88,8 @@ NnlsFit QuasiNewtonNnls::operator()(MatrixIn A, VectorIn b) const {
   }
   fit.w = z.cwiseProduct(scale);
   fit.residual_norm = r.norm();
-  fit.report = {status, objective.evaluations, worst / b_norm};
-  return fit;
+  fit.report = {status, objective.evaluations, worst / scaled.b.norm()};
+  return scaled.undo(std::move(fit));
 }
 
 }  // namespace supple

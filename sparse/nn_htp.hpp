@@ -19,7 +19,7 @@ enum class StepLength {
 /// operations an iteration. \see docs/selectors.md for where it departs from Algorithm 1, and why; Foucart
 /// 2011.
 struct NnHtp {
-  /// Stop at this relative error, if the request has no larger one. The paper: 0.03.
+  /// Stop at this relative error, if the request has none. The paper: 0.03.
   double tolerance = 0;
   /// The paper: 10, but 18 for its dragon. The error is not monotone, each iteration may bring the best one.
   Index max_iterations = 40;
@@ -45,6 +45,7 @@ struct Htp {
   StepLength step = StepLength::Exact;
   Index patience = 3;
   std::uint64_t seed = 0;
+  static constexpr Signs signs = Signs::Any;
 
   template <FittingProblem P>
   Selection operator()(const P& problem, const SelectionRequest& request) const;
@@ -77,13 +78,13 @@ Selection hard_thresholding_pursuit(const Options& options, Signs signs, const P
     const std::vector<Index> entering = hard_threshold(signs, drawn.correlations, s);
     const ColumnsOf<P> fresh = run.columns(drawn, entering);  // S = X ∪ fresh, Eq. 8
 
-    const Vector g_X = -2 * X.block().transpose_times(r), g_fresh = -2 * drawn.correlations(entering);
-    const Vector A_g = X.block().times(g_X) + fresh.times(g_fresh);
-    const double alpha = options.step == StepLength::Paper ? 1.0 : 0.5;
-    const double mu = alpha * (g_X.squaredNorm() + g_fresh.squaredNorm()) / A_g.squaredNorm();  // Eq. 9
-
-    Vector x(w.size() + g_fresh.size());
-    x << w - mu * g_X, -mu * g_fresh;
+    Vector p(w.size() + fresh.size()), x(p.size());  // p = −g/2
+    p << X.block().transpose_times(r), drawn.correlations(entering);
+    const double step = minimising_step(p, [&](const Vector& v) -> Vector {
+      return X.block().times(v.head(w.size())) + fresh.times(v.tail(fresh.size()));
+    });
+    x << w, Vector::Zero(fresh.size());
+    x += (options.step == StepLength::Paper ? 2 : 1) * step * p;  // Eq. 9
     for (Index k = 0; k < w.size(); ++k)
       if (run.rules.must_keep(X.block().index(k))) x[k] = std::numeric_limits<double>::infinity();
     const auto [kept, chosen] = split_at(w.size(), hard_threshold(signs, x, s));

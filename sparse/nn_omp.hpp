@@ -11,7 +11,7 @@ namespace supple {
 /// \note one Aᵀ r over all columns a step, without evaluating them for a FullGradientProblem.
 /// \see Bruckstein, Elad & Zibulevsky 2008; Yaghoobi, Wu & Davies 2015.
 struct NnOmp {
-  double tolerance = 0;  ///< stop at this relative error, if the request has no larger one
+  double tolerance = 0;  ///< stop at this relative error, if the request has none
   /// Share of s to grow to before pruning back to s by backward elimination: 1.3 lowers the error a little
   /// further.
   double overshoot = 1;
@@ -40,7 +40,7 @@ struct NnOmp {
 /// \note as NnOmp.
 /// \see Farhat et al. 2014; Chapman et al. 2017; Lawson & Hanson 1974.
 struct Ecsw {
-  /// stop at this relative error, if the request has no larger one; in the literature 0.01
+  /// stop at this relative error, if the request has none; in the literature 0.01
   double tolerance = 0;
   std::uint64_t seed = 0;  ///< nothing here is random
 

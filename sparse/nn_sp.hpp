@@ -21,7 +21,7 @@ namespace supple {
 /// exchanges, an iteration.
 /// \see Dai & Milenkovic 2009 (subspace pursuit); docs/selectors.md for measurements.
 struct NnSp {
-  /// Stop at this relative error, if the request has no larger one.
+  /// Stop at this relative error, if the request has none.
   double tolerance = 0;
   /// 0: 6000 / s, but at least 24. From 12 on, twice as many lower the error by 5 to 10 %.
   Index max_iterations = 0;

@@ -3,6 +3,7 @@
 #include <sparse/active_set.hpp>
 #include <sparse/fitting_problem.hpp>
 #include <sparse/nnls.hpp>
+#include <sparse/power_scaling.hpp>
 
 #include <Eigen/Jacobi>
 #include <Eigen/QR>
@@ -122,24 +123,14 @@ double kkt_residual(MatrixIn A, const Vector& w, const Vector& r, const Vector& 
   return b_norm > 0 ? worst / b_norm : 0;
 }
 
-}  // namespace
-
-NnlsFit Nnls::operator()(MatrixIn A, VectorIn b, std::span<const Index> start) const {
-  require_size("b", b.size(), A.rows());
+// What Nnls does, for columns and b whose squares are numbers.
+NnlsFit solve(NnlsMethod method, double tolerance, Index limit, const Matrix& A, const Vector& b,
+              std::span<const Index> start) {
   const Index n = A.cols();
-  for (Index i : start)
-    require(0 <= i && i < n, "passive holds " + std::to_string(i) + ", expected 0 to " + std::to_string(n - 1));
-  const Index limit = max_iterations > 0 ? max_iterations : 3 * n + 30;
-
   NnlsFit fit;
   fit.w = Vector::Zero(n);
-  const Vector norms = A.colwise().stableNorm().transpose();
-  const double b_norm = b.stableNorm();
-  if (!norms.allFinite() || !std::isfinite(b_norm)) {
-    fit.report.status = Status::NotFinite;
-    return fit;
-  }
-  const Vector scale = norms.unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0; });
+  const double b_norm = b.norm();
+  const Vector scale = A.colwise().norm().transpose().unaryExpr([](double norm) { return norm > 0 ? 1 / norm : 0; });
   Indices passive(start.begin(), start.end());
   Index iterations = 0;
 
@@ -177,8 +168,9 @@ NnlsFit Nnls::operator()(MatrixIn A, VectorIn b, std::span<const Index> start) c
     // They know squares: pivots below 1e-4, or errors below 1e-5 of b, are too close to the square root of
     // rounding.
     const double error = b_norm > 0 ? fit.residual_norm / b_norm : 0;
-    const bool digits_kept = fit.report.residual <= tolerance && solution.passive.factor.smallest_pivot() > 1e-4 &&
-                             (error > 1e-5 || error < 1e-14);
+    // So are columns that they take for combinations of others.
+    const bool digits_kept = fit.report.residual <= tolerance && !solution.refused &&
+                             solution.passive.factor.smallest_pivot() > 1e-4 && (error > 1e-5 || error < 1e-14);
     enough = method == NnlsMethod::NormalEquations || !finished || digits_kept;
   }
   if (!enough) {
@@ -194,6 +186,26 @@ NnlsFit Nnls::operator()(MatrixIn A, VectorIn b, std::span<const Index> start) c
   for (Index i = 0; i < n; ++i)
     if (fit.w[i] > 0) fit.passive.push_back(i);
   return fit;
+}
+
+}  // namespace
+
+NnlsFit Nnls::operator()(MatrixIn A, VectorIn b, std::span<const Index> start) const {
+  require_size("b", b.size(), A.rows());
+  const Index n = A.cols();
+  for (Index i : start)
+    require(0 <= i && i < n, "passive holds " + std::to_string(i) + ", expected 0 to " + std::to_string(n - 1));
+  const Vector norms = A.colwise().stableNorm().transpose();
+  const double b_norm = b.stableNorm();
+  if (!norms.allFinite() || !std::isfinite(b_norm)) {
+    NnlsFit fit;
+    fit.w = Vector::Zero(n);
+    fit.report.status = Status::NotFinite;
+    return fit;
+  }
+  const PowerScaling scaled(A, b, norms, b_norm);
+  const Index limit = max_iterations > 0 ? max_iterations : 3 * n + 30;
+  return scaled.undo(solve(method, tolerance, limit, scaled.A, scaled.b, start));
 }
 
 }  // namespace supple

@@ -23,6 +23,7 @@ struct PassiveSet {
 struct NnlsSolution {
   Vector w;  ///< ≥ 0
   PassiveSet passive;
+  bool refused = false;  ///< did a column stay out because the normal equations take it for a combination of others?
   /// Residual: largest violation of gᵢ ≤ 0, and of gᵢ = 0 where wᵢ > 0, by gᵢ = aᵢᵀ(b − A w) / ‖aᵢ‖; relative
   /// to maxᵢ |aᵢᵀb| / ‖aᵢ‖. Stagnated: the normal equations have no more digits; w is the best that they
   /// give.
@@ -74,10 +75,10 @@ struct NnlsFit {
 };
 
 /// min ‖A w − b‖ subject to w ≥ 0, for a matrix in memory. Copies of columns, zero columns, any scale of
-/// columns, rank deficiency and n > rows are all answered; of several solutions, one with linearly
+/// columns and of b, rank deficiency and n > rows are all answered; of several solutions, one with linearly
 /// independent columns.
 /// \note NormalEquations: rows n² / 2 multiplications for AᵀA, then O(n²) an exchange; Qr: rows n² first,
-/// if rows > n.
+/// if rows > n. Automatic costs both where columns are copies, or nearly combinations, of others.
 /// \see Bro & De Jong 1997; Lawson & Hanson 1974; Daniel, Gragg, Kaufman & Stewart 1976 (updating QR).
 struct Nnls {
   NnlsMethod method = NnlsMethod::Automatic;
@@ -85,7 +86,8 @@ struct Nnls {
   Index max_iterations = 0;  ///< exchanges; 0: 3 n + 30
 
   /// \param passive  columns to start from; may be empty.
-  /// \throws std::invalid_argument if sizes do not fit. A NaN or infinity gives Status::NotFinite.
+  /// \throws std::invalid_argument if sizes do not fit. A NaN or infinity gives Status::NotFinite, in A and b or in
+  /// weights that are too large or too small for numbers.
   NnlsFit operator()(MatrixIn A, VectorIn b, std::span<const Index> passive = {}) const;
 };
 

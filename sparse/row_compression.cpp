@@ -27,13 +27,14 @@ Matrix orthonormalized(const Matrix& Y) {
 }
 
 Matrix whitening(const Matrix& J, Index rows) {
+  if (J.size() == 0) return Matrix(0, J.rows());
   // Jᵀ = Q R first: the SVD then is of a small square matrix.
   const Eigen::HouseholderQR<Matrix> qr(J.transpose());
   const Matrix R = qr.matrixQR().topRows(J.rows()).triangularView<Eigen::Upper>();
   const Eigen::JacobiSVD<Matrix> svd(R.transpose(), Eigen::ComputeFullU);
   const Vector sigma = svd.singularValues();
   const Index rank = (sigma.array() > 1e-10 * sigma[0]).count(), kept = std::min(rows, rank);
-  return sigma.head(kept).cwiseInverse().asDiagonal() * svd.matrixU().leftCols(kept).transpose();
+  return sigma[0] * sigma.head(kept).cwiseInverse().asDiagonal() * svd.matrixU().leftCols(kept).transpose();
 }
 
 }  // namespace supple

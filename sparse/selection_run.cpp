@@ -1,6 +1,7 @@
 #include <sparse/selection_run.hpp>
 
 #include <cstdio>
+#include <utility>
 
 namespace supple {
 
@@ -20,6 +21,12 @@ std::string to_text(double x) {
 
 }  // namespace
 
+void require_square_in_range(const std::string& name, double x) {
+  if (std::isnan(x)) throw InputError(name + " is not a number, expected finite numbers");
+  if (!(1e-140 <= x && x <= 1e140))
+    throw InputError(name + " is " + to_text(x) + ", expected 0 or from 1e-140 to 1e140: scale A and b");
+}
+
 SelectionRules::SelectionRules(const SelectionRequest& request, Index cols, const Vector& b) {
   const bool unlimited = request.size == SelectionRequest::unlimited;
   require(unlimited || (1 <= request.size && request.size <= cols),
@@ -34,10 +41,8 @@ SelectionRules::SelectionRules(const SelectionRequest& request, Index cols, cons
   for (Index i = 0; i < b.size(); ++i)
     if (!std::isfinite(b[i]))
       throw InputError("b is " + std::to_string(b[i]) + " in row " + std::to_string(i) + ", expected a finite number");
-  const double largest = b.size() > 0 ? b.cwiseAbs().maxCoeff() : 0;
-  if (largest > 0 && largest < 1e-140)
-    throw InputError("the largest entry of b is " + to_text(largest) +
-                     ", whose square is lost to rounding; expected 0 or at least 1e-140: scale A and b");
+  const double norm = b.stableNorm();
+  if (norm != 0) require_square_in_range("the norm of b", norm);
 
   role_.assign(cols, request.candidates.empty() ? Role::Candidate : Role::Excluded);
   for (Index j : request.candidates) role_[j] = Role::Candidate;
@@ -51,16 +56,18 @@ SelectionRules::SelectionRules(const SelectionRequest& request, Index cols, cons
           "must_keep has " + std::to_string(must_keep_.size()) +
               " columns, expected at most size = " + std::to_string(size_));
 
-  std::vector<Index> warm;  // positions in the warm start
-  for (Index k = 0; k < request.warm_start.size(); ++k)
-    if (role_[request.warm_start.indices[k]] == Role::Candidate && request.warm_start.weights[k] > 0) warm.push_back(k);
-  const Vector& weights = request.warm_start.weights;
-  std::stable_sort(warm.begin(), warm.end(), [&](Index k, Index l) { return weights[k] > weights[l]; });
+  const Selection& warm = request.warm_start;
+  std::vector<Index> largest_first;  // positions in the warm start
+  for (Index k = 0; k < warm.size(); ++k)
+    if (role_[warm.indices[k]] == Role::Candidate && warm.weights[k] != 0) largest_first.push_back(k);
+  std::stable_sort(largest_first.begin(), largest_first.end(),
+                   [&](Index k, Index l) { return std::abs(warm.weights[k]) > std::abs(warm.weights[l]); });
   start_ = must_keep_;
-  for (Index k : warm)
-    if (static_cast<Index>(start_.size()) < size_) start_.push_back(request.warm_start.indices[k]);
+  std::vector<char> present(cols, 0);
+  for (Index k : largest_first)
+    if (static_cast<Index>(start_.size()) < size_ && !std::exchange(present[warm.indices[k]], 1))
+      start_.push_back(warm.indices[k]);
   std::sort(start_.begin(), start_.end());
-  start_.erase(std::unique(start_.begin(), start_.end()), start_.end());
 }
 
 std::vector<Index> SelectionRules::eligible_without(const std::vector<Index>& indices) const {

@@ -17,6 +17,10 @@
 
 namespace supple {
 
+/// \throws InputError unless 1e-140 <= x <= 1e140, so that squares and products with squares are numbers with all digits.
+/// \param name  of x, for the message.
+void require_square_in_range(const std::string& name, double x);
+
 /// A request, checked against a problem: who may be chosen, who must be, and how many.
 class SelectionRules {
  public:
@@ -100,9 +104,13 @@ class SelectionRun {
   double b_norm() const { return b_norm_; }
   double error() const { return error_; }  ///< of the best iterate so far
   /// \param residual  ‖b − A w‖.
-  double relative(double residual) const { return residual > 0 ? residual / b_norm_ : 0; }
+  double relative(double residual) const { return residual == 0 ? 0 : residual / b_norm_; }
   double seconds() const { return stopwatch_.seconds(); }
-  bool met(double tolerance) const { return error_ <= std::max({tolerance, request_.target_error, 1e-15}); }
+  Index columns_evaluated() const { return columns_evaluated_; }
+  /// Has the best iterate the error that was asked for: the request's, or else the selector's own?
+  bool met(double tolerance) const {
+    return error_ <= std::max(request_.target_error > 0 ? request_.target_error : tolerance, 1e-15);
+  }
 
   /// What it means to have s columns: all that was asked for, unless that was an error.
   Status status_at_size() const { return request_.target_error > 0 && !met(0) ? Status::Stagnated : Status::Converged; }
@@ -114,7 +122,7 @@ class SelectionRun {
     columns_evaluated_ += static_cast<Index>(js.size());
     ColumnsOf<P> block = columns_of(problem_, std::span<const Index>(js));
     Vector norms = block.squared_norms().cwiseSqrt();
-    for (Index k = 0; k < norms.size(); ++k) require_finite_norm(js[k], norms[k]);
+    for (Index k = 0; k < norms.size(); ++k) require_norm(js[k], norms[k]);
     return {std::move(block), std::move(norms)};
   }
 
@@ -203,7 +211,7 @@ class SelectionRun {
     step.seconds = stopwatch_.seconds();
     step.columns_evaluated = columns_evaluated_;
     history_.push_back(step);
-    if (history_.size() == 1 || (error < error_ && step.size <= rules.size())) {
+    if (history_.size() == 1 || std::isnan(error_) || (error < error_ && step.size <= rules.size())) {
       error_ = error;
       best_indices_ = std::move(indices);
       best_weights_ = w(used);
@@ -229,10 +237,10 @@ class SelectionRun {
     const Vector r = working.residual(w);
     Selection selection{working.indices(), std::move(w), {}};
     SelectionReport& report = selection.report;
-    report.status = status;
     report.iterations = iterations;
     report.residual = r.norm();
     report.training_error = relative(report.residual);
+    report.status = final_status(status, report.training_error);
     report.kkt_residual = kkt_residual(working, selection.weights, r);
     report.columns_evaluated = columns_evaluated_;
     report.stop_reason = std::move(stop_reason);
@@ -242,24 +250,29 @@ class SelectionRun {
   }
 
  private:
-  // So many columns are kept evaluated at a time: 512 MB of entries, or the problem's own representation.
+  // So many columns are kept evaluated at a time: 512 MB of numbers.
   Index largest_block() const {
-    if constexpr (BlockFittingProblem<P>) return 8192;
-    return std::max<Index>(64, (Index{1} << 26) / std::max<Index>(1, problem_.rows()));
+    return std::clamp<Index>((Index{1} << 26) / std::max<Index>(1, numbers_per_column(problem_)), 64, 8192);
+  }
+
+  // A target decides what it means to have come to an end: weights fitted once more may meet it where iterates did not.
+  Status final_status(Status status, double error) const {
+    if (!std::isfinite(error)) return Status::NotFinite;
+    if (request_.target_error == 0) return status;
+    if (error <= std::max(request_.target_error, 1e-15)) return Status::Converged;
+    return status == Status::Converged ? Status::Stagnated : status;
   }
 
   const Vector& all_norms() {
     if (all_norms_.size() == 0) {
       all_norms_ = Vector(problem_.squared_norms()).cwiseSqrt();
-      for (Index j : rules.eligible()) require_finite_norm(j, all_norms_[j]);
+      for (Index j : rules.eligible()) require_norm(j, all_norms_[j]);
     }
     return all_norms_;
   }
 
-  static void require_finite_norm(Index j, double norm) {
-    if (!std::isfinite(norm))
-      throw InputError("column " + std::to_string(j) +
-                       " of A has a norm that is not finite, expected finite numbers below 1e150");
+  static void require_norm(Index j, double norm) {
+    if (norm != 0) require_square_in_range("the norm of column " + std::to_string(j) + " of A", norm);
   }
 
   // Makes `working` hold the best iterate, ascending; what has left it meanwhile is evaluated again.

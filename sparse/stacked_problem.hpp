@@ -38,6 +38,7 @@ class StackedProblem {
   Columns columns(std::span<const Index> js) const {
     return {columns_of(*above_, js), columns_of(*below_, js), above_->rows()};
   }
+  Index numbers_per_column() const { return supple::numbers_per_column(*above_) + supple::numbers_per_column(*below_); }
 
   Vector transpose_times(VectorIn r) const requires FullGradientProblem<P> && FullGradientProblem<Q> {
     require_size("r", r.size(), rows());
@@ -58,8 +59,8 @@ class StackedProblem {
       const Index below = g - above_->num_groups();
       below < 0 ? from_above.push_back(g) : from_below.push_back(below);
     }
-    if (from_above.empty()) from_above.push_back(0);
-    if (from_below.empty()) from_below.push_back(0);
+    if (from_above.empty() && above_->num_groups() > 0) from_above.push_back(0);
+    if (from_below.empty() && below_->num_groups() > 0) from_below.push_back(0);
     using Above = decltype(above_->restricted_to(from_above));
     using Below = decltype(below_->restricted_to(from_below));
     return StackedProblem<Above, Below>(std::make_shared<const Above>(above_->restricted_to(from_above)),

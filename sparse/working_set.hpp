@@ -83,7 +83,7 @@ class WorkingSet {
   void polish(NnlsSolution& solution, Signs signs) const {
     for (int step = 0; step < 3; ++step) {
       const Vector correction = solution.passive.solve(block_.transpose_times(residual(solution.w)));
-      if (correction.norm() <= 1e-14 * solution.w.norm()) return;
+      if (correction.stableNorm() <= 1e-14 * solution.w.stableNorm()) return;
       const Vector w = solution.w + correction;
       if ((signs == Signs::NonNegative && !(w.minCoeff() >= 0)) || residual(w).norm() >= residual(solution.w).norm())
         return;

@@ -1,7 +1,8 @@
 #pragma once
 /// \file What every SubsetSelector promises. A new selector joins with
-/// INSTANTIATE_TYPED_TEST_SUITE_P(Mine, SubsetSelectorConformance, ::testing::Types<MySelector>); and, if its
-/// weights may be negative or it cannot be told a size, a specialisation of SelectorTraits.
+/// INSTANTIATE_TYPED_TEST_SUITE_P(Mine, SubsetSelectorConformance, ::testing::Types<MySelector>); and, if it cannot be
+/// told a size or its weights are no least-squares fit, a specialisation of SelectorTraits. One whose weights may be
+/// negative says so by `static constexpr Signs signs = Signs::Any;`.
 
 #include <core/parallel.hpp>
 #include <sparse/explain_subset_selector.hpp>
@@ -18,13 +19,9 @@ namespace supple::test {
 
 template <typename S>
 struct SelectorTraits {
-  static constexpr Signs signs = Signs::NonNegative;
+  static constexpr Signs signs = signs_of<S>();
   static constexpr bool chooses = true;          ///< false: takes all candidates, whatever the size
   static constexpr bool optimal_weights = true;  ///< the weights are a least-squares fit
-};
-template <>
-struct SelectorTraits<Htp> : SelectorTraits<void> {
-  static constexpr Signs signs = Signs::Any;
 };
 template <>
 struct SelectorTraits<Niht> : SelectorTraits<void> {
@@ -128,11 +125,16 @@ TYPED_TEST_P(SubsetSelectorConformance, AnswersSoundly) {
 }
 
 TYPED_TEST_P(SubsetSelectorConformance, GivesTheSameBitsAgainWhateverTheNumberOfThreads) {
-  const DenseProblem problem = this->problem();
+  const Matrix A = uniform(60, 700, 1) - Matrix::Constant(60, 700, 0.3);  // enough columns for several threads
+  const DenseProblem problem(A, this->rhs(A), 4);
+  SelectionRequest asked = 12;
+  if (!SelectorTraits<TypeParam>::chooses)
+    for (Index j = 0; j < 700; j += 5) asked.candidates.push_back(j);
+  if (!SelectorTraits<TypeParam>::chooses) asked.size = 700;
   set_num_threads(1);
-  const Selection one = TypeParam{}(problem, this->request(12));
+  const Selection one = TypeParam{}(problem, asked);
   set_num_threads(3);
-  const Selection three = TypeParam{}(problem, this->request(12));
+  const Selection three = TypeParam{}(problem, asked);
   set_num_threads(0);
   EXPECT_EQ(one.indices, three.indices);
   EXPECT_EQ(one.weights, three.weights);
@@ -186,9 +188,12 @@ TYPED_TEST_P(SubsetSelectorConformance, IsNoWorseThanABetterStart) {
   const DenseProblem problem = this->problem();
   SelectionRequest asked = this->request(10);
   asked.warm_start = NnSp{.seed = 7}(problem, this->request(10));
+  const Index copied = asked.warm_start.indices[0];  // copies count once
+  asked.warm_start.indices.insert(asked.warm_start.indices.begin(), 3, copied);
+  asked.warm_start.weights = Vector::Ones(asked.warm_start.size());
   const Selection chosen = this->expect_sound_answer(problem, asked);
   if (SelectorTraits<TypeParam>::optimal_weights) {
-    EXPECT_LE(chosen.report.residual, asked.warm_start.report.residual * (1 + 1e-9));
+    EXPECT_LE(chosen.report.residual, asked.warm_start.report.residual * (1 + 1e-9) + 1e-14 * problem.rhs().norm());
     // reached already, up to rounding
     asked.target_error = 1e-12 + 1.001 * asked.warm_start.report.residual / problem.rhs().norm();
     EXPECT_EQ(this->expect_sound_answer(problem, asked).report.status, Status::Converged);
@@ -197,7 +202,8 @@ TYPED_TEST_P(SubsetSelectorConformance, IsNoWorseThanABetterStart) {
 
 TYPED_TEST_P(SubsetSelectorConformance, ReachesTheTargetErrorOrSaysWhyNot) {
   const DenseProblem problem = this->problem();
-  for (double target : {0.9, 0.3, 1e-3, 1e-9}) {
+  const double within_reach = TypeParam{}(problem, this->request(15)).report.training_error;
+  for (double target : {0.9, 0.3, 1.05 * within_reach + 1e-12, 0.95 * within_reach + 1e-12, 1e-3, 1e-9}) {
     SelectionRequest asked = this->request(15);
     asked.target_error = target;
     const Selection c = this->expect_sound_answer(problem, asked);
@@ -273,6 +279,24 @@ TYPED_TEST_P(SubsetSelectorConformance, BearsColumnsOfVeryDifferentScale) {
   this->expect_sound_answer(DenseProblem(1e-8 * A, 1e-8 * b), this->request(12));
 }
 
+TYPED_TEST_P(SubsetSelectorConformance, GivesTheSameBitsInAnyUnits) {
+  const Matrix A = this->matrix();
+  const Vector b = this->rhs(A);
+  const Selection plain = this->expect_sound_answer(DenseProblem(A, b), this->request(12));
+  for (const int of_A : {-450, 0, 450})  // powers of two, which change no digit: about 1e-135 and 1e135
+    for (const int of_b : {-450, 450}) {
+      const DenseProblem problem(std::ldexp(1, of_A) * A, std::ldexp(1, of_b) * b);
+      const Selection c = TypeParam{}(problem, this->request(12));
+      EXPECT_EQ(c.indices, plain.indices) << of_A << ", " << of_b;
+      EXPECT_EQ(c.report.training_error, plain.report.training_error) << of_A << ", " << of_b;
+      ASSERT_EQ(c.weights.size(), plain.weights.size());
+      for (Index k = 0; k < c.size(); ++k) EXPECT_EQ(c.weights[k], std::ldexp(plain.weights[k], of_b - of_A));
+    }
+  Matrix mixed = A;  // one column beside which the others are nothing
+  mixed.col(5) *= 1e120;
+  this->expect_sound_answer(DenseProblem(mixed, b), this->request(12));
+}
+
 TYPED_TEST_P(SubsetSelectorConformance, RefusesNumbersThatAreNotFinite) {
   Matrix A = this->matrix();
   Vector b = this->rhs(A);
@@ -287,9 +311,13 @@ TYPED_TEST_P(SubsetSelectorConformance, RefusesNumbersThatAreNotFinite) {
   EXPECT_THROW(TypeParam{}(DenseProblem(A, b), asked), InputError);
 }
 
-TYPED_TEST_P(SubsetSelectorConformance, RefusesAnRhsWhoseSquareIsLost) {
-  const DenseProblem problem(1e-170 * this->matrix(), Vector::Constant(this->rows, 1e-170));
-  EXPECT_THROW(TypeParam{}(problem, this->request(5)), InputError);
+TYPED_TEST_P(SubsetSelectorConformance, RefusesUnitsInWhichSquaresAreNoNumbers) {
+  const Matrix A = this->matrix();
+  const Vector b = this->rhs(A);
+  for (const double unit : {1e-170, 1e-145, 1e150, 1e200})
+    EXPECT_THROW(TypeParam{}(DenseProblem(A, unit * b), this->request(5)), InputError) << unit;
+  for (const double unit : {1e-145, 1e150, 1e200})
+    EXPECT_THROW(TypeParam{}(DenseProblem(unit * A, b), this->request(5)), InputError) << unit;
 }
 
 TYPED_TEST_P(SubsetSelectorConformance, RefusesRequestsThatMakeNoSense) {
@@ -328,7 +356,8 @@ REGISTER_TYPED_TEST_SUITE_P(SubsetSelectorConformance, AnswersSoundly, GivesTheS
                             StartsFromAnEarlierSelection, IsNoWorseThanABetterStart, ReachesTheTargetErrorOrSaysWhyNot,
                             NeedsNoSizeForATargetError, ChoosesOneColumn, TakesAllColumnsOfASmallProblem,
                             BearsASizeBeyondTheRank, NeedsNothingWhereBIsZero, NeverTakesAZeroColumn,
-                            BearsCopiesOfColumns, BearsColumnsOfVeryDifferentScale, RefusesAnRhsWhoseSquareIsLost,
-                            RefusesNumbersThatAreNotFinite, RefusesRequestsThatMakeNoSense, AsksForHeldOutErrors);
+                            BearsCopiesOfColumns, BearsColumnsOfVeryDifferentScale, GivesTheSameBitsInAnyUnits,
+                            RefusesUnitsInWhichSquaresAreNoNumbers, RefusesNumbersThatAreNotFinite,
+                            RefusesRequestsThatMakeNoSense, AsksForHeldOutErrors);
 
 }  // namespace supple::test

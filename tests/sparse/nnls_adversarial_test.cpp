@@ -154,6 +154,49 @@ TEST(Nnls, ReducesManyRowsWithoutLoss) {
   EXPECT_TRUE(by_qr.w.isApprox(fit.w, 1e-11));
 }
 
+TEST(Nnls, LetsQrTakeOverWhereTheNormalEquationsTakeColumnsForCombinations) {
+  // Columns that are combinations of four up to 1e-9, and a residual that they still explain.
+  const Matrix A = gaussian(23, 4, 69) * gaussian(4, 10, 70) + 1e-9 * gaussian(23, 10, 71);
+  const Vector b = A * uniform(10, 1, 75) + 1e-6 * A.norm() * gaussian(23, 1, 77);
+  const NnlsFit fit = Nnls{}(A, b), reference = Nnls{.method = NnlsMethod::LawsonHanson}(A, b);
+  EXPECT_GT((Nnls{.method = NnlsMethod::NormalEquations}(A, b).residual_norm), 1.2 * reference.residual_norm);
+  EXPECT_LE(fit.residual_norm, reference.residual_norm * (1 + 1e-6));
+}
+
+TEST_P(NnlsMethods, DoNotDependOnUnits) {
+  const Matrix A = gaussian(60, 40, 3);
+  const Vector b = gaussian(60, 1, 4);
+  const NnlsFit plain = Nnls{.method = GetParam()}(A, b);
+  ASSERT_EQ(plain.report.status, Status::Converged);
+  const auto unit = [](int exponent) { return std::ldexp(1.0, exponent); };  // so that not a bit may differ
+  for (const auto& [of_A, of_b] :
+       {std::pair{560, 560}, {-560, -560}, {0, -560}, {-300, 600}, {1000, 1000}, {-900, 0}}) {
+    const NnlsFit fit = Nnls{.method = GetParam()}(unit(of_A) * A, unit(of_b) * b);
+    EXPECT_EQ(fit.report.status, Status::Converged) << of_A << ", " << of_b;
+    EXPECT_EQ(fit.passive, plain.passive);
+    for (Index j = 0; j < 40; ++j) EXPECT_EQ(fit.w[j], std::ldexp(plain.w[j], of_b - of_A));
+    EXPECT_EQ(fit.residual_norm, std::ldexp(plain.residual_norm, of_b));
+    EXPECT_EQ(fit.report.residual, plain.report.residual);
+  }
+  Matrix tiny = A;
+  tiny.col(7) *= 1e-310;  // not normal numbers any more
+  const NnlsFit fit = Nnls{.method = GetParam()}(tiny, b);
+  EXPECT_TRUE(fit.report.status == Status::NotFinite || fit.w.allFinite());
+}
+
+TEST(Nnls, RefusesWeightsThatAreBeyondAllNumbers) {
+  const Matrix A = gaussian(30, 10, 3);
+  const Vector b = A * Vector::Ones(10) + gaussian(30, 1, 4);
+  for (const auto& [of_A, of_b] : {std::pair{1e-200, 1e200}, {1e200, 1e-200}}) {
+    const NnlsFit fit = Nnls{}(of_A * A, of_b * b);
+    EXPECT_EQ(fit.report.status, Status::NotFinite);
+    EXPECT_TRUE((fit.w.array() == 0).all());
+    EXPECT_TRUE(fit.passive.empty());
+    EXPECT_NEAR(fit.residual_norm, of_b * b.norm(), 1e-12 * of_b * b.norm());
+    EXPECT_EQ((QuasiNewtonNnls{}(of_A * A, of_b * b).report.status), Status::NotFinite);
+  }
+}
+
 TEST(Nnls, StartsFromAnyPassiveSet) {
   const Matrix A = uniform(60, 30, 6);
   const Vector b = gaussian(60, 1, 7) + Vector::Ones(60);

@@ -5,6 +5,7 @@
 #include <sparse/fitting_problem.hpp>
 #include <testing/random_problems.hpp>
 
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -77,6 +78,20 @@ class ColumnsOnly {
  private:
   Matrix A_;
   Vector b_;
+};
+
+/// The same, which counts the columns that it is asked for.
+class CountingProblem : public ColumnsOnly {
+ public:
+  using ColumnsOnly::ColumnsOnly;
+  void column(Index j, VectorOut out) const {
+    ++evaluated_;
+    ColumnsOnly::column(j, out);
+  }
+  Index evaluated() const { return evaluated_; }
+
+ private:
+  mutable std::atomic<Index> evaluated_ = 0;
 };
 
 }  // namespace supple::test

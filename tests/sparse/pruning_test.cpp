@@ -20,14 +20,14 @@ struct PruneTest : testing::Test {
   /// Backward elimination by a fit for each column that might go.
   std::vector<Index> eliminated(std::vector<Index> left, std::size_t size, const std::vector<char>& fixed = {}) const {
     while (left.size() > size) {
-      const Vector w = least_squares(left);
+      const Vector x = least_squares(left);
       Index worst = -1;
       double least = 0;
       for (std::size_t k = 0; k < left.size(); ++k) {
         if (!fixed.empty() && fixed[left[k]]) continue;
         std::vector<Index> others = left;
         others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-        const double loss = w[k] > 0 ? squared_error(others) : w[k] * A.col(left[k]).norm();
+        const double loss = x[k] > 0 ? squared_error(others) : x[k] * A.col(left[k]).norm();
         if (worst < 0 || loss < least) worst = static_cast<Index>(k), least = loss;
       }
       left.erase(left.begin() + worst);

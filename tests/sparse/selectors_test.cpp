@@ -143,17 +143,88 @@ TEST(Sketched, LosesLittle) {
   EXPECT_LT(Sketched<NnSp>{}(cube(), 40).report.training_error, 1.5 * exact);
 }
 
-TEST(Niht, RecoversAPlantedSignedSolution) {
-  const auto support = test::random_subset(200, 10, 1);
-  const Matrix A = gaussian(100, 200, 2);
-  Vector w = test::planted_weights(200, support, 3);
-  for (std::size_t k = 0; k < support.size(); k += 2) w[support[k]] *= -1;
-  const DenseProblem problem(A, A * w);
-  for (const Selection& c : {Niht{}(problem, 10), Htp{}(problem, 10)}) {
-    EXPECT_EQ(c.indices, support);
-    EXPECT_TRUE(c.weights.isApprox(w(support), 1e-6));
+TEST(Sketched, ReachesATargetThatItsSizeAllows) {
+  const auto expect_reached = [](const auto& select) {
+    SelectionRequest request(20);
+    request.target_error = 1.05 * select(cube(), request).report.training_error;
+    const Selection c = select(cube(), request);
+    EXPECT_LE(c.report.training_error, request.target_error);
+    EXPECT_EQ(c.report.status, Status::Converged);
+  };
+  expect_reached(Ecm{});
+  expect_reached(Sketched<NnSp>{});
+  expect_reached(Sketched<NnOmp>{.select = {}, .rows = 60});
+}
+
+TEST(Sketched, AnswersWhereThereAreNoRows) {
+  const DenseProblem nothing(Matrix(0, 5), Vector(0));
+  EXPECT_EQ(Ecm{}(nothing, 3).size(), 0);
+  EXPECT_EQ(Sketched<NnSp>{}(nothing, 3).size(), 0);
+}
+
+TEST(Ecm, AccountsForBothItsPasses) {
+  const test::CountingProblem problem(cube().matrix(), cube().rhs());
+  const Selection c = Ecm{}(problem, 20);
+  EXPECT_EQ(c.report.columns_evaluated, problem.evaluated());
+  EXPECT_GE(problem.evaluated(), 2 * problem.cols());
+}
+
+TEST(GreedyGrowth, JudgesTheTargetByWhatItReturns) {
+  SelectionRequest request(50);
+  request.target_error = 1.05 * NnOmp{.overshoot = 1.3}(cube(), request).report.training_error;
+  const Selection c = NnOmp{.overshoot = 1.3}(cube(), request);
+  EXPECT_LE(c.report.training_error, request.target_error);
+  EXPECT_EQ(c.report.status, Status::Converged);
+}
+
+TEST(NnSp, GoesForTheRequestsTargetBeforeItsOwnTolerance) {
+  const Selection c = NnSp{.tolerance = 0.2}(cube(), SelectionRequest::to_error(0.02));
+  EXPECT_LE(c.report.training_error, 0.02);
+  EXPECT_LT(c.size(), 60);
+}
+
+/// b = A w, A Gaussian rows × 200, w with `size` weights of both signs.
+struct SignedSignal {
+  std::vector<Index> support;
+  Vector w;
+  DenseProblem problem;
+
+  static SignedSignal planted(Index rows, Index size) {
+    const auto support = test::random_subset(200, size, 1);
+    const Matrix A = gaussian(rows, 200, 2);
+    Vector w = test::planted_weights(200, support, 3);
+    for (std::size_t k = 0; k < support.size(); k += 2) w[support[k]] *= -1;
+    return {support, w, DenseProblem(A, A * w)};
   }
-  EXPECT_GT(NnNiht{}(problem, 10).report.training_error, 0.1);
+};
+
+TEST(Niht, RecoversAPlantedSignedSolution) {
+  const SignedSignal signal = SignedSignal::planted(100, 10);
+  for (const Selection& c : {Niht{}(signal.problem, 10), Htp{}(signal.problem, 10)}) {
+    EXPECT_EQ(c.indices, signal.support);
+    EXPECT_TRUE(c.weights.isApprox(signal.w(signal.support), 1e-6));
+  }
+  EXPECT_GT(NnNiht{}(signal.problem, 10).report.training_error, 0.1);
+}
+
+TEST(Htp, KeepsItsSignsInSketchesAndWarmStarts) {
+  const SignedSignal signal = SignedSignal::planted(1000, 10);
+  const Selection sketched = Sketched<Htp>{.select = {}, .rows = 150}(signal.problem, 10);
+  EXPECT_EQ(sketched.indices, signal.support);
+  EXPECT_LE(sketched.report.training_error, 1e-12);
+
+  SelectionRequest request(10);
+  request.warm_start.indices = signal.support;
+  request.warm_start.weights = signal.w(signal.support);
+  EXPECT_LE((Htp{.max_iterations = 0}(signal.problem, request).report.training_error), 1e-12);
+}
+
+TEST(Niht, SurvivesDrawsThatHelpNothing) {
+  Matrix A(1, 4);
+  A << -1, -1, -1, 1;
+  const DenseProblem problem(A, Vector::Ones(1));
+  for (std::uint64_t seed = 0; seed < 8; ++seed)
+    EXPECT_EQ((NnNiht{.candidates_per_size = 1, .patience = 100, .seed = seed}(problem, 1).report.training_error), 0);
 }
 
 TEST(Niht, DecreasesTheErrorMonotonicallyWithNormalizedSteps) {

@@ -3,6 +3,7 @@
 #include <sparse/stacked_problem.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/sparse/problems.hpp>
 
 #include <gtest/gtest.h>
 
@@ -69,6 +70,19 @@ TEST_F(StackedProblemTest, GroupsAreThoseOfBothAndNeitherIsEverEmpty) {
   rows({1, 7}, {4, 5, 6, 7, 29, 30, 31, 32, 33});
   rows({1}, {4, 5, 6, 7, 24, 25, 26, 27, 28});
   rows({6}, {0, 1, 2, 3, 24, 25, 26, 27, 28});
+}
+
+TEST_F(StackedProblemTest, OnePartMayHaveNoRows) {
+  const DenseProblem nothing(Matrix(0, cols), Vector(0));
+  const Selection alone = NnSp{.seed = 3}(above, 8), both = NnSp{.seed = 3}(StackedProblem(above, nothing), 8);
+  EXPECT_EQ(both.indices, alone.indices);
+  EXPECT_TRUE(is_near(both.weights, alone.weights, 1e-12));
+}
+
+TEST_F(StackedProblemTest, CountsTheNumbersOfBothParts) {
+  const ColumnsOnly below_by_columns(A.bottomRows(10), b.tail(10));
+  EXPECT_EQ(numbers_per_column(StackedProblem(above, below_by_columns)), 10);  // those of `above` are in memory
+  EXPECT_EQ(numbers_per_column(AnyProblem(stacked)), numbers_per_column(stacked));
 }
 
 TEST_F(StackedProblemTest, IsSolvedAsTheMatrixIs) {
