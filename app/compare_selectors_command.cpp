@@ -16,6 +16,29 @@ namespace supple {
 
 namespace {
 
+/// In the order of their first occurrence.
+template <typename T>
+std::vector<T> without_copies(const std::vector<T>& values) {
+  std::vector<T> result;
+  for (const T& value : values)
+    if (std::ranges::find(result, value) == result.end()) result.push_back(value);
+  return result;
+}
+
+/// The sizes asked for, of m components.
+std::vector<Index> sizes_to_compare(const CompareSelectorsCommand& command, Index m, std::string_view components) {
+  if (command.sizes.empty()) {
+    std::vector<Index> usual{50, 100, 150, 250};
+    std::erase_if(usual, [m](Index size) { return size > m; });
+    return usual.empty() ? std::vector<Index>{m} : usual;
+  }
+  for (const Index size : command.sizes)
+    if (size < 1 || size > m)
+      throw InputError("--sizes holds " + std::to_string(size) + ", expected 1 to the number of " +
+                       std::string(components) + ", " + std::to_string(m));
+  return without_copies(command.sizes);
+}
+
 SelectorRun run_selector(const SelectionStudy& study, const std::string& selector, Index size, std::uint64_t seed,
                          std::optional<Index> train_groups, const Progress& progress) {
   SelectionRequest request(size);
@@ -33,11 +56,13 @@ SelectorRun run_selector(const SelectionStudy& study, const std::string& selecto
 std::string description(const CompareSelectorsCommand& command, const ReduceOptions& options, const Body& body,
                         const SelectionStudy& study) {
   const ReduceReport& report = study.report();
-  std::string text = shown_count(report.components) + " " + std::string(component_name(body)) + " (" +
-                     std::string(law(body)) + "), subspace of dimension " + std::to_string(report.dimension) + ", " +
-                     std::to_string(report.poses) + " training poses by the " + command.recipe +
-                     " recipe, errors in the " + (options.norm == ForceNorm::Mass ? "mass" : "stiffness") + " norm, " +
-                     std::to_string(command.runs) + (command.runs == 1 ? " seed" : " seeds") + ".";
+  const Index equilibria = num_equilibria(body, options);
+  std::string text =
+      shown_count(report.components) + " " + std::string(component_name(body)) + " (" + std::string(law(body)) +
+      "), subspace of dimension " + std::to_string(report.dimension) + ", " + std::to_string(report.poses) +
+      " training poses" + (equilibria > 0 ? " and " + std::to_string(equilibria) + " equilibria" : "") + " by the " +
+      command.recipe + " recipe, errors in the " + (options.norm == ForceNorm::Mass ? "mass" : "stiffness") +
+      " norm, " + std::to_string(command.runs) + (command.runs == 1 ? " seed" : " seeds") + ".";
   if (!study.scenes().empty()) text += " Pulls reach";
   for (std::size_t k = 0; k < study.scenes().size(); ++k)
     text += (k == 0 ? " " : ", ") + shown_percent(study.largest_displacements()[k], 2) + " of the diagonal (" +
@@ -57,11 +82,9 @@ void CompareSelectorsCommand::run() const {
   const NamedMesh named = load_mesh(mesh);
   const Body body = load_body(*this, named);
   const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
-  for (const std::string& selector : selectors)
-    for (const Index size : sizes)
-      if (selector != "all" && (size < 1 || size > m))
-        throw InputError("--sizes holds " + std::to_string(size) + ", expected 1 to the number of " +
-                         std::string(component_name(body)) + ", " + std::to_string(m));
+  const std::vector<std::string> names = without_copies(selectors);
+  const bool only_all = names == std::vector<std::string>{"all"};  // which has its own size
+  const std::vector<Index> points = only_all ? std::vector{m} : sizes_to_compare(*this, m, component_name(body));
   const ReduceOptions options = reduce_options(*this, named, body);
   if (std::ranges::find(selectors, "all") != selectors.end()) (void)num_components_to_weight(body, options);
   const OutputFolder folder(output);
@@ -72,8 +95,8 @@ void CompareSelectorsCommand::run() const {
   for (const std::string& note : study.report().notes) warn(note);
 
   std::vector<SelectorRun> results;
-  for (const std::string& selector : selectors)
-    for (const Index size : selector == "all" ? std::vector<Index>{m} : sizes)
+  for (const std::string& selector : names)
+    for (const Index size : selector == "all" ? std::vector{m} : points)
       for (Index k = 0; k < (selector == "all" ? 1 : runs); ++k) {
         results.push_back(
             run_selector(study, selector, size, seed + static_cast<std::uint64_t>(k), train_groups, progress_bar()));
@@ -87,7 +110,8 @@ void CompareSelectorsCommand::run() const {
   if (!output.empty()) {
     {
       const ExitGuard guard;
-      write_file(output / "table.md", "# " + title + "\n\n" + text + "\n\n" + table);
+      write_file(output / "table.md",
+                 "# " + title + "\n\n" + text + "\n\n" + table + "\n" + std::string(selector_table_notes) + "\n");
     }
     write_selector_page(output, title, text, summaries, study.scenes(),
                         draw_selector_plots(output, results, study.scenes()));

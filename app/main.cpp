@@ -345,9 +345,11 @@ CLI::App& add_compare_selectors(CLI::App& app, CompareSelectorsCommand& c) {
       ->capture_default_str()
       ->check(CLI::IsMember(known_selectors()))
       ->group(comparison);
-  compare.add_option("--sizes", c.sizes, "Numbers of components, separated by commas")
+  compare
+      .add_option("--sizes", c.sizes,
+                  "Numbers of components, separated by commas [50,100,150,250, as far as the object has them]")
       ->delimiter(',')
-      ->capture_default_str()
+      ->type_name("N")
       ->group(comparison);
   compare.add_option("--runs", c.runs, "Seeds for each selector and size")
       ->capture_default_str()
@@ -570,7 +572,7 @@ int run(int argc, char** argv) {
   add_mesh(app, mesh).callback([&] { mesh.run(); });
   try {
     app.parse(argc, argv);
-    return std::fflush(stdout) == 0 ? 0 : fail(1, "stdout cannot be written");
+    return std::fflush(stdout) == 0 && !std::ferror(stdout) ? 0 : fail(1, "stdout cannot be written");
   } catch (const CLI::Success& asked) {  // --help, --version
     return app.exit(asked);
   } catch (const CLI::ParseError& error) {

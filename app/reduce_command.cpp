@@ -198,8 +198,7 @@ void print_summary(const ReduceCommand& command, const ReducedModel& model, cons
   if (report.exact_eigenvalues.size() > 0)
     rows.emplace_back("softest eigenvalue",
                       shown_percent(report.fitted_eigenvalues[0] / report.exact_eigenvalues[0] - 1, 2) + " off");
-  rows.emplace_back("selection",
-                    std::to_string(report.selection.iterations) + " iterations, " + report.selection.stop_reason);
+  rows.emplace_back("selection", shown_iterations(report.selection.iterations) + ", " + report.selection.stop_reason);
   rows.emplace_back("peak memory", shown_bytes(report.peak_memory));
   rows.emplace_back("model", command.model.string());
   print_rows(stdout, "reduced model of " + model.provenance.at("mesh"), rows);

@@ -10,6 +10,7 @@
 #include <io/matrix_file.hpp>
 #include <reduction/reduce.hpp>
 #include <sparse/greedy_cubature.hpp>
+#include <sparse/selection_run.hpp>
 #include <sparse/selector_library.hpp>
 #include <sparse/smallest_selection.hpp>
 
@@ -29,6 +30,12 @@ Vector read_rhs(const std::filesystem::path& path, const Matrix& A, const std::f
     throw InputError(path.string() + ": has " + std::to_string(b.size()) + " numbers, expected " +
                      std::to_string(A.rows()) + ", one for each row of " + matrix.string());
   return b;
+}
+
+/// \throws InputError naming the file if squares of its numbers are none.
+void require_units(const std::filesystem::path& path, MatrixIn numbers) {
+  const double largest = numbers.size() > 0 ? numbers.cwiseAbs().maxCoeff() : 0;
+  if (largest != 0) require_square_in_range(path.string() + ": the largest number", largest);
 }
 
 /// Rows that no selector sees.
@@ -162,7 +169,7 @@ void print_summary(const SelectCommand& command, const DenseProblem& problem, co
   if (!command.validate_matrix.empty()) rows.emplace_back("held-out error", shown_percent(held_out_error));
   rows.insert(rows.end(), {{"residual", shown(report.residual)},
                            {"KKT residual", shown(report.kkt_residual)},
-                           {"selection", std::to_string(report.iterations) + " iterations, " + report.stop_reason},
+                           {"selection", shown_iterations(report.iterations) + ", " + report.stop_reason},
                            {"columns seen", shown_count(report.columns_evaluated)},
                            {"peak memory", shown_bytes(peak_resident_memory())}});
   print_rows(stdout, "selection from " + command.matrix.string(), rows);
@@ -181,6 +188,8 @@ void SelectCommand::run() const {
   if (A.rows() % group_size != 0)
     throw InputError(matrix.string() + ": has " + std::to_string(A.rows()) +
                      " rows, expected a multiple of --group-size " + std::to_string(group_size));
+  require_units(matrix, A);
+  require_units(rhs.empty() ? matrix : rhs, b);
   const std::optional<HeldOut> held_out = read_held_out(*this, A.cols());
   SelectionRequest request = selection_request(*this, A.cols());
   const DenseProblem problem(std::move(A), std::move(b), group_size);

@@ -227,9 +227,11 @@ std::string markdown_table(const std::vector<SelectorSummary>& summaries, const 
 }
 
 std::vector<std::pair<std::string, std::string>> draw_selector_plots(const std::filesystem::path& folder,
-                                                                     const std::vector<SelectorRun>& runs,
+                                                                     std::vector<SelectorRun> runs,
                                                                      const std::vector<PullScene>& scenes) {
   std::vector<std::pair<std::string, std::string>> drawn;
+  std::erase_if(runs, [](const SelectorRun& run) { return run.selector == "all"; });  // whose error is rounding
+  if (runs.empty()) return drawn;
   const auto draw = [&](const std::string& name, const std::string& caption, Plot plot) {
     if (plot.series.empty()) return;
     plot.x = fitted(plot.x, plot.series, [](const PlotSeries& line) { return line.x; });
@@ -260,7 +262,9 @@ std::vector<std::pair<std::string, std::string>> draw_selector_plots(const std::
   for (const SelectorRun& run : runs) all.push_back(run.size);
   std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
   const Index middle = all[all.size() / 2];
-  draw("convergence.svg", "Training error while selecting " + std::to_string(middle) + " components, first seed.",
+  draw("convergence.svg",
+       "Training error while selecting " + std::to_string(middle) +
+           " components, first seed. Selectors without iterations on all rows are not shown.",
        {.x = {.label = "iteration", .scale = Scale::Log},
         .y = {.label = "training force error [%]", .scale = Scale::Log},
         .series = convergence(runs, middle)});
@@ -291,10 +295,7 @@ void write_selector_page(const std::filesystem::path& folder, const std::string&
   };
   page += "<div class=\"wide\">\n<table>\n<thead>" + row(heading(summaries, scenes), "th") + "</thead>\n<tbody>\n";
   for (const SelectorSummary& summary : summaries) page += row(cells(summary), "td");
-  page +=
-      "</tbody>\n</table>\n</div>\n<p>Medians over seeds, the range in brackets. The softest eigenvalue is that of the "
-      "fitted "
-      "stiffness at rest, relative to the exact one. Processor time is that of all threads.</p>\n</body>\n</html>\n";
+  page += "</tbody>\n</table>\n</div>\n<p>" + escaped(std::string(selector_table_notes)) + "</p>\n</body>\n</html>\n";
   const ExitGuard guard;
   write_file(folder / "index.html", page);
 }

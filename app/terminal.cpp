@@ -88,6 +88,10 @@ std::string shown_count(long long count) {
   return text;
 }
 
+std::string shown_iterations(long long count) {
+  return shown_count(count) + (count == 1 ? " iteration" : " iterations");
+}
+
 std::string shown_bytes(double bytes) {
   return bytes < 1e9 ? shown(bytes / 1e6, 3) + " MB" : shown(bytes / 1e9, 3) + " GB";
 }

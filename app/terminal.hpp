@@ -30,7 +30,8 @@ std::string exact(double value);
 /// The shortest text of so many significant digits: "0.0123", "1.5e+06".
 std::string shown(double value, int digits = 4);
 std::string shown_percent(double share, int digits = 3);
-std::string shown_count(long long count);  ///< "95 142"
+std::string shown_count(long long count);       ///< "95 142"
+std::string shown_iterations(long long count);  ///< "1 iteration", "2 iterations"
 std::string shown_bytes(double bytes);
 
 }  // namespace supple

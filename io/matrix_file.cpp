@@ -434,7 +434,8 @@ Array read_mtx(std::string name, std::string_view bytes) {
         in.fail("column " + std::to_string(j) + " does not exist, expected 1 to " + std::to_string(cols));
       if (!is_general && (j > i || (j == i && header.symmetry == Symmetry::Skew)))
         in.fail("entry (" + std::to_string(i) + ", " + std::to_string(j) +
-                ") is not below the diagonal, where a symmetric file states each entry once");
+                (j == i ? ") is on the diagonal, which is zero in a skew-symmetric matrix"
+                        : ") is above the diagonal, expected each pair once, below it"));
       const double a = value(/*in_line=*/true);
       end_line("an entry");
       A(i - 1, j - 1) += a;

@@ -115,8 +115,8 @@ void check(const Plot& plot) {
   require(any, "a plot has no point that can be shown");
 }
 
-/// The corner of the plot that holds the fewest points: where the legend hides the least.
-std::string emptiest_corner(const Plot& plot) {
+/// A corner of the plot without points, or else beside it: where the legend hides nothing.
+std::string place_of_legend(const Plot& plot) {
   const auto along = [](const Axis& axis, double value) { return axis.scale == Scale::Log ? std::log(value) : value; };
   std::vector<Eigen::Array2d> points;
   Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -127,19 +127,15 @@ std::string emptiest_corner(const Plot& plot) {
       low = low.min(points.back());
       high = high.max(points.back());
     }
-  std::string best;
-  std::size_t fewest = points.size() + 1;
   for (const auto& [name, x, y] :
        {std::tuple{"top right", 1, 1}, {"top left", 0, 1}, {"bottom right", 1, 0}, {"bottom left", 0, 0}}) {
-    const Eigen::Array2d corner(x, y), reach(0.5, 0.1 + 0.06 * static_cast<double>(plot.series.size()));
-    std::size_t inside = 0;
-    for (const Eigen::Array2d& point : points)
-      inside += ((((point - low) / (high - low).max(1e-300)) - corner).abs() < reach).all();
-    if (inside >= fewest) continue;
-    fewest = inside;
-    best = name;
+    const Eigen::Array2d corner(x, y), reach(0.35, 0.1 + 0.06 * static_cast<double>(plot.series.size()));
+    const bool hides = std::ranges::any_of(points, [&](const Eigen::Array2d& point) {
+      return ((((point - low) / (high - low).max(1e-300)) - corner).abs() < reach).all();
+    });
+    if (!hides) return name;
   }
-  return best;
+  return "outside right top";
 }
 
 /// The axis, whose coordinates are these `values` of the series, with numbers where it is logarithmic and spans less than
@@ -155,10 +151,15 @@ Axis with_ticks(const Plot& plot, Axis axis, Vector PlotSeries::*values) {
       }
   low = axis.low.value_or(low);
   high = axis.high.value_or(high);
-  if (high < 100 * low)
+  if (high >= 100 * low) return axis;
+  const std::vector<std::vector<double>> coarse_to_fine{{1, 2, 5}, {1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9}};
+  for (const std::vector<double>& digits : coarse_to_fine) {
+    axis.ticks.clear();
     for (double power = std::pow(10, std::floor(std::log10(low))); power <= high; power *= 10)
-      for (const double tick : {power, 2 * power, 5 * power})
-        if (0.5 * low <= tick && tick <= 2 * high) axis.ticks.push_back(tick);
+      for (const double digit : digits)
+        if (0.5 * low <= digit * power && digit * power <= 2 * high) axis.ticks.push_back(digit * power);
+    if (std::ranges::count_if(axis.ticks, [&](double tick) { return low <= tick && tick <= high; }) > 1) break;
+  }
   return axis;
 }
 
@@ -179,14 +180,17 @@ std::string axis_commands(const char* name, const Axis& axis) {
 
 std::string style_commands(PlotStyle style, std::size_t series) {
   const std::string colour = " linecolor rgb '" + std::string(palette[series % palette.size()]) + "'";
-  const std::string points = " pointsize 1 pointtype " + std::to_string(point_types[series % point_types.size()]);
+  const std::size_t round = series / palette.size();  // in the second one colours meet other markers and dots
+  const std::string points =
+      " pointsize 1 pointtype " + std::to_string(point_types[(series + 3 * round) % point_types.size()]);
+  const std::string dots = round % 2 == 1 ? " dashtype (2,4)" : "";
   switch (style) {
     case PlotStyle::Line:
-      return "with lines linewidth 2" + colour;
+      return "with lines linewidth 2" + dots + colour;
     case PlotStyle::Markers:
       return "with points" + points + colour;
     case PlotStyle::LinePoints:
-      return "with linespoints linewidth 2" + points + colour;
+      return "with linespoints linewidth 2" + dots + points + colour;
     case PlotStyle::DashedLine:
       return "with lines linewidth 2 dashtype (12,7)" + colour;
   }
@@ -203,9 +207,9 @@ std::string script(const Plot& plot, const std::string& terminal) {
       "set tics nomirror out scale 0.6 textcolor rgb '#404040'\n"
       "set grid xtics ytics back linetype 1 linecolor rgb '#e2e2e2' linewidth 1\n"
       "set key " +
-      emptiest_corner(plot) +
+      place_of_legend(plot) +
       " Left reverse opaque noenhanced samplen 2.5 spacing 1.15 width 1 textcolor rgb '#303030'\n"
-      "set lmargin 11\nset rmargin 3\nset datafile missing 'NaN'\n";
+      "set lmargin 11\nset datafile missing 'NaN'\n";
   if (!plot.title.empty())
     commands += "set title " + gnuplot_string(plot.title) + " noenhanced font 'Helvetica,17' textcolor rgb '#202020'\n";
   commands += axis_commands("x", with_ticks(plot, plot.x, &PlotSeries::x));
@@ -245,7 +249,11 @@ void draw_plot(const std::filesystem::path& path, const Plot& plot) {
     throw InputError(path.string() + ": cannot be drawn: gnuplot does not start: " + std::strerror(gnuplot.error));
   if (gnuplot.status != 0 || gnuplot.output.empty())
     throw InputError(path.string() + ": cannot be drawn: gnuplot failed: " + gnuplot.messages.substr(0, 2000));
-  write_file(path, gnuplot.output);
+  std::string picture = gnuplot.output;
+  constexpr std::string_view title = "<title>Gnuplot</title>\n";  // which browsers would show
+  if (const auto at = picture.find(title); extension == ".svg" && at != std::string::npos)
+    picture.erase(at, title.size());
+  write_file(path, picture);
 }
 
 }  // namespace supple

@@ -68,6 +68,25 @@ TEST_F(CompareSelectorsTest, TrainsGreedyOnSubsetsOfPoses) {
   EXPECT_EQ(all, error({"--train-groups", "26"}));  // 20 random poses, 6 equilibria
 }
 
+TEST_F(CompareSelectorsTest, TakesTheUsualSizesThatTheObjectHasAndNothingTwice) {
+  const json report = this->report(small({"--selectors", "random,batched-greedy,random", "--runs", "1"}));
+  std::vector<std::pair<std::string, int>> runs;
+  for (const json& run : report["runs"]) runs.emplace_back(run["selector"], run["size"]);
+  EXPECT_THAT(runs, testing::ElementsAre(std::pair{"random", 50}, std::pair{"random", 100}, std::pair{"random", 150},
+                                         std::pair{"batched-greedy", 50}, std::pair{"batched-greedy", 100},
+                                         std::pair{"batched-greedy", 150}));  // of 192 tets
+  EXPECT_EQ(this->report(small({"--selectors", "random", "--runs", "1", "--sizes", "9,9"}))["runs"].size(), 1u);
+  EXPECT_THAT(report["description"].get<std::string>(), HasSubstr("20 training poses and 6 equilibria"));
+}
+
+TEST_F(CompareSelectorsTest, LeavesTheCeilingOutOfPlots) {
+  ASSERT_EQ(supple(small({"--selectors", "random,all", "--sizes", "20", "--runs", "1", "-o", "out"})).exit_code, 0);
+  EXPECT_THAT(read("out/error-size.svg"), testing::Not(HasSubstr(">all<")));
+  EXPECT_THAT(read("out/index.html"), testing::AllOf(HasSubstr("<td>all</td>"), HasSubstr("0.3 and 0.1 of their")));
+  ASSERT_EQ(supple(small({"--selectors", "all", "-o", "alone"})).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "alone" / "error-size.svg"));
+}
+
 TEST_F(CompareSelectorsTest, CountsGaussPointsOfHexahedra) {
   Arguments arguments = small({"--components", "gauss-points", "--selectors", "nn-sp", "--sizes", "20", "--runs", "1"});
   arguments[1] = "hexbox:6x2x2";

@@ -59,9 +59,9 @@ TEST_F(ReduceCommandTest, ReportsWhatItMeasured) {
   EXPECT_GT(report["peak_memory"], 1e6);
   EXPECT_FALSE(report["selection"]["stop_reason"].get<std::string>().empty());
   const auto best = [](const json& some) {
-    double best = 1;
-    for (const json& step : some["selection"]["history"]) best = std::min(best, step["training_error"].get<double>());
-    return best;
+    double least = 1;
+    for (const json& step : some["selection"]["history"]) least = std::min(least, step["training_error"].get<double>());
+    return least;
   };
   EXPECT_GE(report["training_error"], best(report) * (1 - 1e-9));  // weights are refitted, for the sake of equilibria
   EXPECT_LT(report["training_error"], best(report) * 1.1);

@@ -289,6 +289,25 @@ TEST_F(SelectCommandTest, RefusesBadInputInOneLineAndLeavesNothing) {
             (std::vector<std::string>{"A.npy", "b.npy", "bad.npy", "list.txt", "narrow.npy", "old.json", "short.npy"}));
 }
 
+TEST_F(SelectCommandTest, RefusesUnitsInWhichSquaresAreNoNumbers) {
+  for (const double unit : {1e-200, 1e160, 1e300}) {
+    write_npy("units.npy", unit * A);
+    expect_refusal({"select", "--matrix", "units.npy", "--rhs", "b.npy", "--points", "10"},
+                   {"units.npy: the largest number is", "from 1e-140 to 1e140"});
+    write_npy("units.npy", unit * b);
+    expect_refusal({"select", "--matrix", "A.npy", "--rhs", "units.npy", "--points", "10"},
+                   {"units.npy: the largest number is", "from 1e-140 to 1e140"});
+  }
+}
+
+TEST_F(SelectCommandTest, SaysSoWhereStdoutIsFull) {
+  for (const char* points : {"1", "40"}) {  // less and more than a buffer holds
+    const Outcome outcome = run_supple_on_full_disk(job({"--points", points, "--json", "-"}), folder);
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.err, HasSubstr("stdout cannot be written"));
+  }
+}
+
 TEST_F(SelectCommandTest, LeavesNothingWhenASignalEndsIt) {
   write_npy("large.npy", uniform(800, 4000, 1));
   const Outcome outcome = run_supple_until_signal(

@@ -24,8 +24,9 @@ std::string drain(int descriptor) {
 }
 
 /// \param wait  called before the signal is sent.
+/// \param device  that stdout goes to; null: into the outcome.
 Outcome run(const Arguments& arguments, const std::filesystem::path& folder, bool terminal, int signal = 0,
-            const std::function<void()>& wait = {}) {
+            const std::function<void()>& wait = {}, const char* device = nullptr) {
   int out[2], err[2];
   if (pipe(out) != 0) throw std::runtime_error("no pipe");
   if (terminal) {
@@ -42,7 +43,7 @@ Outcome run(const Arguments& arguments, const std::filesystem::path& folder, boo
   argv.push_back(nullptr);
   const pid_t child = fork();
   if (child == 0) {
-    dup2(out[1], STDOUT_FILENO);
+    dup2(device ? open(device, O_WRONLY) : out[1], STDOUT_FILENO);
     dup2(err[1], STDERR_FILENO);
     for (const int descriptor : {out[0], out[1], err[0], err[1]}) close(descriptor);
     if (chdir(folder.c_str()) == 0) execv(argv[0], argv.data());
@@ -71,6 +72,9 @@ Outcome run_supple(const Arguments& arguments, const std::filesystem::path& fold
 }
 Outcome run_supple_on_terminal(const Arguments& arguments, const std::filesystem::path& folder) {
   return run(arguments, folder, true);
+}
+Outcome run_supple_on_full_disk(const Arguments& arguments, const std::filesystem::path& folder) {
+  return run(arguments, folder, false, 0, {}, "/dev/full");
 }
 Outcome run_supple_until_signal(const Arguments& arguments, const std::filesystem::path& folder, int signal,
                                 int milliseconds) {

@@ -23,6 +23,8 @@ struct Outcome {
 Outcome run_supple(const Arguments& arguments, const std::filesystem::path& folder);
 /// The same with stderr on a terminal.
 Outcome run_supple_on_terminal(const Arguments& arguments, const std::filesystem::path& folder);
+/// The same with a stdout that takes nothing.
+Outcome run_supple_on_full_disk(const Arguments& arguments, const std::filesystem::path& folder);
 /// The same, sent `signal` after so many milliseconds.
 Outcome run_supple_until_signal(const Arguments& arguments, const std::filesystem::path& folder, int signal,
                                 int milliseconds);

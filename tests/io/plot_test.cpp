@@ -55,6 +55,34 @@ TEST_F(PlotTest, LogAxesOfLessThanTwoPowersOfTenHaveMoreNumbersThanThose) {
   EXPECT_THAT(svg(), Not(HasSubstr("0.002")));
 }
 
+TEST_F(PlotTest, EvenShortLogAxesHaveTwoNumbers) {
+  SKIP_WITHOUT_GNUPLOT;
+  plot.y = {.label = "error", .scale = Scale::Log};
+  plot.series[0].x *= 1000;  // whose numbers are others
+  for (const double low : {1.2, 2.2, 5.3, 7.0}) {
+    plot.y.low = low;
+    plot.y.high = 1.69 * low;
+    plot.series[0].y.setLinSpaced(low * 1.1, low * 1.5);
+    const std::string text = svg();
+    int numbers = 0;
+    for (const char* number : {"1.2", "1.5", "2", "2.5", "3", "6", "7", "8", "9", "10"})
+      numbers += text.find(std::string(">") + number + "<") != std::string::npos;
+    EXPECT_GE(numbers, 2) << low;
+  }
+}
+
+TEST_F(PlotTest, ManySeriesAreToldApart) {
+  SKIP_WITHOUT_GNUPLOT;
+  const PlotSeries one = plot.series[0];
+  plot.series.clear();
+  for (int k = 0; k < 13; ++k) {
+    plot.series.push_back(one);
+    plot.series.back().style = PlotStyle::LinePoints;
+    plot.series.back().name = "series " + std::to_string(k);
+  }
+  EXPECT_THAT(svg(), HasSubstr("stroke-dasharray"));  // from the eighth on, where colours begin anew
+}
+
 TEST_F(PlotTest, PngHasTheSizeThatWasAskedFor) {
   SKIP_WITHOUT_GNUPLOT;
   plot.width = 320;
