@@ -289,7 +289,8 @@ TEST_F(MtxFile, IsRefusedByLineAndExpectation) {
   expect_refusal(coordinate + "2 2 1\n1 1\n     ", ":3: expected a number, the line ends");
   expect_refusal(coordinate + "2 2 1\n1 1 1\n2 2 2\n", ":4: expected the end of the file after all entries");
   expect_refusal(symmetric + "2 2 1\n1 2 5\n", ":3: entry (1, 2) is above the diagonal");
-  expect_refusal("%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n2 2 5\n", "entry (2, 2) is on the diagonal");
+  expect_refusal("%%MatrixMarket matrix coordinate real skew-symmetric\n2 2 1\n2 2 5\n",
+                 "entry (2, 2) is on the diagonal");
 }
 
 TEST_F(MtxFile, WithALyingHeaderIsRefusedBeforeAnythingIsAllocated) {
