@@ -105,8 +105,7 @@ void EditCommand::run() const {
   const Points& rest = node_positions(reduced.body);
   const ReducedModes modes = reduced_modes(reduced);
   if (modes.num_zero == modes.omega.size()) throw SolverError("the model has no flexible mode");
-  const double softest = modes.omega[modes.num_zero] * modes.omega[modes.num_zero];
-  const std::vector<Handle> handles = make_handles(edits, softest, nodal_mass(reduced.body).sum());
+  const std::vector<Handle> handles = make_handles(edits, modes.softest_stiffness(), nodal_mass(reduced.body).sum());
   const auto path = handle_paths(edits, handles, rest);
   const OutputFolder folder(output);
   times.finish("read model");

@@ -147,9 +147,9 @@ std::vector<Shape> shapes_of(const Body& body, const EditScene& edits, const Red
         if (d == 0) d = space->dim();
         const GalerkinSystem<Model, S> reduced(system, space);
         if (handles.empty()) {
-          const ReducedModes spectrum = reduced_modes(reduced.rest_stiffness(), space->report.known_rigid_modes());
+          const ReducedModes spectrum = reduced_modes(reduced.rest_stiffness(), space->report.known_zero_modes());
           if (spectrum.num_zero == spectrum.omega.size()) throw SolverError("the object has no flexible mode");
-          handles = make_handles(edits, std::pow(spectrum.omega[spectrum.num_zero], 2), system->nodal_mass().sum());
+          handles = make_handles(edits, spectrum.softest_stiffness(), system->nodal_mass().sum());
           path = handle_paths(edits, handles, rest);
         }
         solve_path(

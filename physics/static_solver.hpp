@@ -54,7 +54,7 @@ class StaticSolver {
                                             {.tolerance = options_.tolerance,
                                              .max_iterations = options_.max_iterations,
                                              .refresh_after = options_.refresh_after});
-      if (bfgs.refreshes > 0) prepared_ = false;
+      if (bfgs.refreshes > 0 || bfgs.status == Status::Stagnated) prepared_ = false;
       return {bfgs, bfgs.refreshes};
     }
     return by_nlopt(objective, u);

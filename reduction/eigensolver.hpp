@@ -31,8 +31,8 @@ struct EigenPairs {
   Vector residuals;      ///< ‖K φ − ω² M φ‖_{M⁻¹} / (ω² + σ), computed afresh for every pair
   Report report;         ///< iterations counts blocks of solves; residual is the largest of `residuals`
   Index missed = 0;      ///< modes the first search passed over and the completeness check put in
-  /// Leading pairs with ω² ≤ 1e-13 ‖M^{−1/2} K M^{−1/2}‖_∞: motions without energy beyond `rigid`, such as
-  /// hinges.
+  /// Leading pairs with ω² ≤ 1e-13 ‖M^{−1/2} K M^{−1/2}‖_∞ and ω² ≤ 1e-3 of the one that follows them: motions without
+  /// energy beyond `rigid`, such as hinges.
   Index extra_zero_modes = 0;
   /// Largest ‖K φ‖_{M⁻¹} / ‖M^{−1/2} K M^{−1/2}‖_∞ over the M-orthonormalised columns φ of `rigid`.
   double rigid_residual = 0;

@@ -35,8 +35,7 @@ class GalerkinSystem {
     f = subspace_->project(full);
   }
   void stiffness(VectorIn q, Matrix& K) const {
-    system_->stiffness(system_->restrict(subspace_->reconstruct(q)), K_);
-    K = project_stiffness(*subspace_, *system_, K_);
+    K = project_stiffness(*subspace_, *system_, system_->stiffness(system_->restrict(subspace_->reconstruct(q))));
   }
 
   /// Forces on all nodes, n · node_dim → on the unknowns.
@@ -53,7 +52,6 @@ class GalerkinSystem {
   std::shared_ptr<const S> subspace_;
   Vector mass_;
   Matrix rest_stiffness_;
-  mutable SparseMatrix K_;  // its pattern is set up once
 };
 
 }  // namespace supple

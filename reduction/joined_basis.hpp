@@ -38,6 +38,7 @@ JoinedSubspace<A, B> join(const A& first, const B& second, const Vector& nodal_m
     report.omega = second.report.omega;
     report.residuals = second.report.residuals;
     report.rigid_modes = second.report.rigid_modes;
+    report.zero_modes = second.report.zero_modes;
   }
   report.dropped += second.report.dropped + block * joined.dropped;
   report.notes.insert(report.notes.end(), second.report.notes.begin(), second.report.notes.end());

@@ -49,10 +49,10 @@ VibrationModes vibration_modes(const SparseMatrix& K, const Vector& mass, const 
   result.omega.tail(num_flexible) = pairs.omega_squared.cwiseMax(0).cwiseSqrt();
   result.residuals = Vector::Constant(result.vectors.cols(), pairs.rigid_residual);
   result.residuals.tail(num_flexible) = pairs.residuals;
+  result.num_zero = rigid.cols() + pairs.extra_zero_modes;
   if (pairs.extra_zero_modes > 0)
     result.notes.push_back(
-        std::to_string(result.num_rigid + pairs.extra_zero_modes) + " motions cost no energy where " +
-        std::to_string(result.num_rigid) +
+        std::to_string(result.num_zero) + " motions cost no energy where " + std::to_string(result.num_rigid) +
         " rigid ones were expected: the object has hinges (parts that share only a node or an edge), or "
         "its fixed nodes do not hold it");
   if (pairs.missed > 0)
@@ -73,8 +73,9 @@ NodalBasis extend_modes(const VibrationModes& modes, const Points& rest_position
     fields.middleCols(affine.cols() + 3 * i, 3) = mode;
   }
   Orthonormalized orthonormal = mass_orthonormalize(fields, nodal_mass);
-  return {std::move(orthonormal.W),
-          {modes.omega, modes.residuals, modes.num_rigid, 3 * orthonormal.dropped, modes.notes}};
+  SubspaceReport report = modes.report();
+  report.dropped = 3 * orthonormal.dropped;
+  return {std::move(orthonormal.W), std::move(report)};
 }
 
 }  // namespace supple

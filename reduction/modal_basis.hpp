@@ -16,7 +16,11 @@ struct VibrationModes {
   Vector residuals;  ///< relative, see EigenPairs
   FreeComponents components;
   Index num_rigid = 0;
+  Index num_zero = 0;  ///< leading modes without energy: rigid ones and hinges
   std::vector<std::string> notes;
+
+  /// Of a subspace that is made from them.
+  SubspaceReport report() const { return {omega, residuals, num_rigid, num_zero, 0, notes}; }
 };
 
 struct ModeOptions {
@@ -52,8 +56,8 @@ struct ModalBasis {
 
   template <typename System>
   DenseBasis operator()(const System& system) const {
-    VibrationModes modes = vibration_modes(system, {num_modes, tolerance, seed, progress});
-    return {modes.vectors, {modes.omega, modes.residuals, modes.num_rigid, 0, modes.notes}};
+    const VibrationModes modes = vibration_modes(system, {num_modes, tolerance, seed, progress});
+    return {modes.vectors, modes.report()};
   }
 };
 

@@ -77,19 +77,12 @@ class StaticResponse {
   CholmodSolver cholesky_;
 };
 
-/// Leading modes without energy: rigid ones and hinges.
-Index num_without_energy(const VibrationModes& modes) {
-  Index count = modes.num_rigid;
-  while (count < modes.omega.size() && modes.omega[count] <= 1e-6 * modes.omega[modes.omega.size() - 1]) ++count;
-  return count;
-}
-
 }  // namespace
 
 ModalDerivativeVectors modal_derivatives(const RestState& object, const VibrationModes& modes, double tolerance,
                                          const Progress& progress) {
   require_size("modes.vectors", modes.vectors.rows(), 3 * object.numbering.num_nodes());
-  const Index first = num_without_energy(modes), r = modes.vectors.cols() - first;
+  const Index first = modes.num_zero, r = modes.vectors.cols() - first;
   require(r > 0, "modal derivatives: no mode has energy");
   tell(progress, "modal derivatives", 0);
   const ForceCurvature H(object);
@@ -135,7 +128,7 @@ DenseBasis ModalDerivatives::build(const RestState& object) const {
                       object.positions, {parts.num_rigid_modes() + num_modes, tolerance, seed, progress});
   const ModalDerivativeVectors derivatives = modal_derivatives(object, modes, tolerance, progress);
   const Vector mass = object.mass_of_rows();
-  SubspaceReport report{modes.omega, modes.residuals, modes.num_rigid, 0, modes.notes};
+  SubspaceReport report = modes.report();
   if (derivatives.residual > tolerance)
     report.notes.push_back("modal derivatives have a relative residual of " +
                            std::to_string(1e6 * derivatives.residual) + "e-6, more than was asked for");

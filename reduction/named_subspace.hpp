@@ -66,8 +66,7 @@ NamedSubspace single_subspace(const System& system, const SubspaceChoice& choice
   }
   if (choice.name == "modal") {
     VibrationModes vibration = modes(choice.dimension > 0 ? choice.dimension : choice.modes);
-    return share(DenseBasis{std::move(vibration.vectors),
-                            {vibration.omega, vibration.residuals, vibration.num_rigid, 0, vibration.notes}});
+    return share(DenseBasis{std::move(vibration.vectors), vibration.report()});
   }
   if (choice.name == "derivatives")
     return stage("modes and derivatives", [&](auto) {

@@ -14,7 +14,7 @@ Vector softest_eigenvalues(const Matrix& stiffness, Index first, Index count) {
 
 void check(const ReduceOptions& options) {
   require(options.points >= 1, "number of points is " + std::to_string(options.points) + ", expected at least 1");
-  require(options.target_error >= 0, "target error is negative, expected 0 or more");
+  require(options.target_error >= 0, "target error is negative or not a number, expected 0 or more");
   require(options.equilibria.value_or(0) >= 0, "number of equilibria is negative, expected 0 or more");
   require(options.held_out_poses >= 0, "number of held-out poses is negative, expected 0 or more");
   check(options.subspace_choice());

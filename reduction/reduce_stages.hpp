@@ -172,7 +172,7 @@ Training<Model, S> train(const ObjectTraits& object, std::shared_ptr<const FullS
   Matrix rest_stiffness;
   ReducedModes modes = stage("reduced stiffness", [&](auto) {
     rest_stiffness = project_stiffness(*subspace, *system);
-    return reduced_modes(rest_stiffness, subspace->report.known_rigid_modes());
+    return reduced_modes(rest_stiffness, subspace->report.known_zero_modes());
   });
   PoseOptions pose_options = options.poses;
   pose_options.seed += 1000003 * options.seed;  // the seed of a run moves all random choices

@@ -1,3 +1,4 @@
+#include <core/random.hpp>
 #include <core/tensor_file.hpp>
 #include <reduction/reduced_model.hpp>
 
@@ -174,11 +175,32 @@ Body read_body(const ModelReader& in, Points nodes) {
   return read_solid<TetMesh>(in, std::move(nodes));
 }
 
+/// \throws InputError unless the basis has columns, UᵀMU = I, and leaves fixed nodes where they are.
+void check_basis(const ModelReader& in, const ReducedModel& model) {
+  const Vector mass = nodal_mass(model.body);
+  std::visit(
+      [&](const auto& basis) {
+        const RowMatrix& W = basis->W;
+        const Index rows_of_node = W.rows() / mass.size();
+        if (W.cols() == 0) throw in.fail("subspace.W has no columns");
+        for (const Index v : fixed_nodes(model.body))
+          if (!W.middleRows(v * rows_of_node, rows_of_node).isZero(0))
+            throw in.fail("subspace.W moves node " + std::to_string(v) + ", which is fixed");
+        const Vector masses = mass.replicate(1, rows_of_node).transpose().reshaped();
+        Random random(1);
+        const Matrix X = Matrix::NullaryExpr(W.cols(), 4, [&] { return random.normal(); });
+        const Matrix Y = W.transpose() * (masses.asDiagonal() * (W * X)).eval();
+        if (!((Y - X).norm() <= 1e-6 * X.norm()))
+          throw in.fail("subspace.W is not orthonormal with the masses of the nodes");
+      },
+      model.subspace);
+}
+
 }  // namespace
 
 ReducedModes reduced_modes(const ReducedModel& model) {
   return std::visit(
-      [&](const auto& basis) { return reduced_modes(model.rest_stiffness, basis->report.known_rigid_modes()); },
+      [&](const auto& basis) { return reduced_modes(model.rest_stiffness, basis->report.known_zero_modes()); },
       model.subspace);
 }
 
@@ -198,6 +220,7 @@ void save_model(const std::filesystem::path& path, const ReducedModel& model) {
       [&](const auto& basis) {
         file.metadata["subspace.block"] = std::to_string(std::remove_cvref_t<decltype(*basis)>::block);
         file.metadata["subspace.rigid_modes"] = std::to_string(basis->report.rigid_modes);
+        file.metadata["subspace.zero_modes"] = std::to_string(basis->report.zero_modes);
         file.add("subspace.W", basis->W);
         file.add("subspace.omega", basis->report.omega);
         file.add("subspace.residuals", basis->report.residuals);
@@ -239,12 +262,20 @@ ReducedModel load_model(const std::filesystem::path& path) {
   const auto load_basis = [&]<int block>(std::integral_constant<int, block>) {
     auto basis = std::make_shared<KroneckerBasis<block>>();
     basis->W = in.finite_matrix("subspace.W", 3 * n / block);
-    basis->report.omega = in.finite_vector("subspace.omega");
-    basis->report.residuals = file.vector("subspace.residuals", basis->report.omega.size());
-    basis->report.rigid_modes = in.whole_number("subspace.rigid_modes", file.metadata("subspace.rigid_modes"));
-    if (basis->report.rigid_modes < 0 || basis->report.rigid_modes > basis->report.omega.size())
-      throw in.fail("subspace.rigid_modes is " + std::to_string(basis->report.rigid_modes) + ", expected 0 to " +
-                    std::to_string(basis->report.omega.size()));
+    SubspaceReport& report = basis->report;
+    report.omega = in.finite_vector("subspace.omega");
+    report.residuals = file.vector("subspace.residuals", report.omega.size());
+    const auto number_of_modes = [&](const std::string& key, Index least) {
+      const Index count = in.whole_number(key, file.metadata(key));
+      if (count < least || count > report.omega.size())
+        throw in.fail(key + " is " + std::to_string(count) + ", expected " + std::to_string(least) + " to " +
+                      std::to_string(report.omega.size()));
+      return count;
+    };
+    report.rigid_modes = number_of_modes("subspace.rigid_modes", 0);
+    report.zero_modes = file.metadata().contains("subspace.zero_modes")
+                            ? number_of_modes("subspace.zero_modes", report.rigid_modes)
+                            : report.rigid_modes;
     model.subspace = std::shared_ptr<const KroneckerBasis<block>>(std::move(basis));
   };
   model.subspace_name = file.metadata("subspace.name");
@@ -258,7 +289,7 @@ ReducedModel load_model(const std::filesystem::path& path) {
 
   try {  // what constructing the model demands: law, parameters, volumes
     const Index m = with_force_model(model.body, [](const auto& force) { return force->num_components(); });
-    (void)nodal_mass(model.body);
+    check_basis(in, model);
     for (const std::int64_t i : file.integers("selection.indices")) {
       if (i < 0 || i >= m)
         throw in.fail("selection.indices names component " + std::to_string(i) + ", expected 0 to " +
@@ -273,7 +304,10 @@ ReducedModel load_model(const std::filesystem::path& path) {
   }
   model.weights = in.finite_vector("selection.weights", static_cast<Index>(model.indices.size()));
   if (!(model.weights.array() > 0).all()) throw in.fail("selection.weights are not all positive");
+  if (model.indices.empty()) throw in.fail("selection.indices is empty, expected one component at least");
   model.rest_stiffness = in.finite_matrix("rest_stiffness", model.dim(), model.dim());
+  const Matrix& K = model.rest_stiffness;
+  if ((K - K.transpose()).norm() > 1e-8 * K.norm()) throw in.fail("rest_stiffness is not symmetric");
   return model;
 }
 

@@ -4,14 +4,19 @@
 
 namespace supple {
 
-ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index> num_rigid) {
+ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index> num_zero) {
+  require(reduced_stiffness.rows() > 0, "the reduced stiffness is empty");
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(reduced_stiffness);
   if (eigen.info() != Eigen::Success) throw SolverError("eigenvalues of the reduced stiffness did not converge");
-  ReducedModes modes{eigen.eigenvalues().cwiseMax(0).cwiseSqrt(), eigen.eigenvectors(), num_rigid.value_or(0)};
+  ReducedModes modes{eigen.eigenvalues().cwiseMax(0).cwiseSqrt(), eigen.eigenvectors(), num_zero.value_or(0)};
   const double largest = modes.omega.size() > 0 ? modes.omega[modes.omega.size() - 1] : 0;
-  if (!num_rigid)
-    while (modes.num_zero < modes.omega.size() && modes.omega[modes.num_zero] <= 1e-5 * largest) ++modes.num_zero;
-  require(modes.num_zero <= modes.omega.size(), "there are more rigid motions than modes");
+  const Index d = modes.omega.size();
+  Index& zero = modes.num_zero;
+  if (!num_zero) {
+    while (zero < d && modes.omega[zero] <= 1e-5 * largest) ++zero;
+    while (0 < zero && zero < d && modes.omega[zero - 1] > std::sqrt(1e-3) * modes.omega[zero]) --zero;
+  }
+  require(zero <= d, "there are more motions without energy than modes");
   for (Index j = 0; j < modes.Phi.cols(); ++j) {  // one sign for every platform
     Index at;
     modes.Phi.col(j).cwiseAbs().maxCoeff(&at);
@@ -21,7 +26,7 @@ ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index>
 }
 
 Vector ReducedModes::positive_omega() const {
-  require(num_zero < omega.size(), "the reduced stiffness is zero");
+  (void)softest_stiffness();
   Vector result = omega;
   result.head(num_zero).setConstant(omega[num_zero]);
   return result;
@@ -29,6 +34,8 @@ Vector ReducedModes::positive_omega() const {
 
 double ReducedModes::softest_stiffness() const {
   require(num_zero < omega.size(), "the reduced stiffness is zero");
+  require(omega[num_zero] > 0, "the reduced stiffness has more than " + std::to_string(num_zero) +
+                                   " motions without energy, expected no more than the modes of the object have");
   return omega[num_zero] * omega[num_zero];
 }
 

@@ -30,9 +30,9 @@ struct ReducedModes {
   /// The lowest eigenvalue that is not zero [1/s²].
   double softest_stiffness() const;
 };
-/// \param num_rigid  how many motions have no energy, where that is known. Otherwise those with ω̄ up to 1e-5 of
-/// the largest count, which a very stiff part can push a flexible mode below.
-ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index> num_rigid = {});
+/// \param num_zero  how many motions have no energy, where that is known. Otherwise those count with ω̄ up to 1e-5 of the
+/// largest and ω̄² up to 1e-3 of the one that follows them: the soft part of a very stiff object lies low, but not alone.
+ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index> num_zero = {});
 
 // ---------------------------------------------------------------------------------------------------------------------
 

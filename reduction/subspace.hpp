@@ -17,15 +17,15 @@ struct SubspaceReport {
   Vector omega;           ///< angular frequencies of the modes it was made from [rad/s], rigid ones first; may be none
   Vector residuals;       ///< relative residuals of these modes, in the same order
   Index rigid_modes = 0;  ///< how many of them are rigid motions
+  Index zero_modes = 0;   ///< how many of them have no energy: rigid motions, and those of hinges
   Index dropped = 0;      ///< linearly dependent vectors that were left out
   std::vector<std::string> notes;  ///< what a user should know: missing or surplus rigid modes, …
   /// Of the principal component analysis that chose the columns, descending; none if there was none.
   Vector singular_values = {};
 
-  /// The number of motions without energy, known once a flexible mode follows the rigid ones (no hinge does).
-  std::optional<Index> known_rigid_modes() const {
-    const bool known = rigid_modes < omega.size() && omega[rigid_modes] > 1e-6 * omega[omega.size() - 1];
-    return known ? std::optional(rigid_modes) : std::nullopt;
+  /// The number of motions without energy in the subspace, known if a mode with energy follows them.
+  std::optional<Index> known_zero_modes() const {
+    return zero_modes < omega.size() ? std::optional(zero_modes) : std::nullopt;
   }
 };
 

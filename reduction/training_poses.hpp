@@ -48,6 +48,7 @@ struct TrainingPoses {
 /// by projection in the mass norm, Uᵀ M u.
 template <Subspace S>
 Matrix poses_in_subspace(const S& subspace, const Vector& nodal_mass, const Matrix& given) {
+  require(given.allFinite(), "given_poses hold a number that is not finite");
   if (given.rows() == subspace.dim()) return given;
   require_size("given_poses.rows()", given.rows(), subspace.full_dim());
   const Index node_dim = subspace.full_dim() / nodal_mass.size();

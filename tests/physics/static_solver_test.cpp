@@ -8,6 +8,8 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace supple::test {
 namespace {
 
@@ -81,6 +83,38 @@ TEST(StaticSolver, EscapesAnUnstableEquilibrium) {
   ASSERT_EQ(newton.solve(load, u).status, Status::Converged);
   Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(bar.system.stiffness(u)), Eigen::EigenvaluesOnly);
   EXPECT_GT(eigen.eigenvalues()[0], 0);
+}
+
+/// One unknown in a well cosh u − 1, whose tangent can be made to fail away from rest.
+struct FailingWell {
+  using MatrixType = Matrix;
+  static constexpr bool symmetric_tangent = true;
+  Vector ones = Vector::Ones(1);
+  Matrix K0 = Matrix::Identity(1, 1);
+  bool fails = false;
+
+  Index dim() const { return 1; }
+  const Vector& mass() const { return ones; }
+  double energy(VectorIn u) const { return std::cosh(u[0]) - 1; }
+  void force(VectorIn u, VectorOut f) const { f[0] = std::sinh(u[0]); }
+  void stiffness(VectorIn u, Matrix& K) const {
+    K = Matrix::Constant(1, 1, fails && u[0] != 0 ? std::nan("") : std::cosh(u[0]));
+  }
+  const Matrix& rest_stiffness() const { return K0; }
+  AffineLoad<Matrix> project(const Loads&) const { return {Vector::Zero(1), {}}; }
+};
+
+TEST(StaticSolver, GoesOnAfterATangentThatFailed) {
+  FailingWell well;
+  StaticSolver solver(well, {.method = StaticMethod::Bfgs, .refresh_after = 1});
+  const AffineLoad<Matrix> load{Vector::Constant(1, 50.0), {}};
+  Vector u = Vector::Zero(1);
+  well.fails = true;
+  EXPECT_NE(solver.solve(load, u).status, Status::Converged);
+  well.fails = false;
+  u.setZero();
+  EXPECT_EQ(solver.solve(load, u).status, Status::Converged);
+  EXPECT_NEAR(u[0], std::asinh(50.0), 1e-5);
 }
 
 TEST(StaticSolver, RefusesWhatMakesNoSense) {

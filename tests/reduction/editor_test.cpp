@@ -1,3 +1,4 @@
+#include <core/parallel.hpp>
 #include <reduction/editor.hpp>
 #include <reduction/galerkin_system.hpp>
 #include <reduction/modal_basis.hpp>
@@ -166,6 +167,22 @@ TEST(GalerkinSystem, IsTheReducedSystemOfAllComponents) {
   const auto a = galerkin.project(loads), b = reduced.project(loads);
   EXPECT_TRUE(is_near(a.force, b.force, 1e-12 * a.force.norm()));
   EXPECT_TRUE(is_near(a.stiffness, b.stiffness, 1e-12 * a.stiffness.norm()));
+}
+
+TEST(GalerkinSystem, MayBeAskedFromSeveralThreads) {
+  const auto full = std::make_shared<const StvkBar>(clamped_bar());
+  const GalerkinSystem galerkin(full, std::make_shared<const NodalBasis>(ExtendedModalBasis{.num_modes = 2}(*full)));
+  const auto tangent = [&](Index k) {
+    Matrix K;
+    galerkin.stiffness(random_vector(galerkin.dim(), 0.05, 10 + static_cast<unsigned>(k)), K);
+    return K;
+  };
+  std::vector<Matrix> alone(16), together(16);
+  for (Index k = 0; k < 16; ++k) alone[k] = tangent(k);
+  set_num_threads(4);
+  parallel_for(16, [&](Index k) { together[k] = tangent(k); });
+  set_num_threads(0);
+  for (Index k = 0; k < 16; ++k) EXPECT_TRUE(is_same(together[k], alone[k])) << k;
 }
 
 TEST(Editor, HandlesComeAndGo) {

@@ -263,6 +263,17 @@ TEST(Eigensolver, DropsDependentRigidFields) {
   EXPECT_LE((pairs.omega_squared - expected).cwiseAbs().maxCoeff(), 1e-10);
 }
 
+TEST(Eigensolver, TakesASoftPartBesideAStiffOneForNoHinge) {
+  const auto zero_modes = [](const std::vector<double>& eigenvalues) {
+    const auto n = static_cast<Index>(eigenvalues.size());
+    SparseMatrix K(n, n);
+    for (Index i = 0; i < n; ++i) K.insert(i, i) = eigenvalues[i];
+    return smallest_eigenpairs(K, Vector::Ones(n), Matrix(n, 0), {.num_modes = 5, .progress = {}}).extra_zero_modes;
+  };
+  EXPECT_EQ(zero_modes({5, 6, 60, 200, 800, 1e4, 1e7, 1e11, 1e15}), 0);
+  EXPECT_EQ(zero_modes({1e-3, 2e-3, 60, 200, 800, 1e4, 1e7, 1e11, 1e15}), 2);
+}
+
 TEST(Eigensolver, CountsTheMotionsOfAHinge) {
   // Two blocks that share the nodes of one edge turn about it; two that share one node have three such
   // motions.

@@ -364,6 +364,24 @@ TEST_F(ModelFile, IsRefusedIfAnythingIsWrongWithIt) {
   EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).density = Vector::Ones(5); }),
               testing::HasSubstr("bar.supple"));
   EXPECT_THAT(changed([](auto& m) { m.rest_stiffness.setZero(8, 9); }), testing::HasSubstr("rest_stiffness"));
+  EXPECT_THAT(changed([](auto& m) { m.rest_stiffness(0, 1) *= 2; }), testing::HasSubstr("not symmetric"));
+  EXPECT_THAT(changed([](auto& m) { m.indices.clear(), m.weights.resize(0); }), testing::HasSubstr("is empty"));
+  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).fixed_nodes.push_back(62); }),
+              testing::HasSubstr("moves node 62, which is fixed"));
+  EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).density *= 4; }), testing::HasSubstr("not orthonormal"));
+  EXPECT_THAT(changed([](auto& m) {
+                NodalBasis none = *std::get<std::shared_ptr<const NodalBasis>>(m.subspace);
+                none.W.conservativeResize(Eigen::NoChange, 0);
+                m.subspace = std::make_shared<const NodalBasis>(std::move(none));
+                m.rest_stiffness.resize(0, 0);
+              }),
+              testing::HasSubstr("subspace.W has no columns"));
+  EXPECT_THAT(changed([](auto& m) {
+                NodalBasis more = *std::get<std::shared_ptr<const NodalBasis>>(m.subspace);
+                more.report.zero_modes = 2;
+                m.subspace = std::make_shared<const NodalBasis>(std::move(more));
+              }),
+              testing::HasSubstr("subspace.zero_modes is 2, expected 0 to 1"));
   EXPECT_THAT(changed([](auto& m) {
                 std::swap(std::get<Solid>(m.body).mesh.tets[0][0], std::get<Solid>(m.body).mesh.tets[0][1]);
               }),
@@ -395,6 +413,34 @@ TEST(Reduce, ReducesAShellAndKeepsIt) {
     return with_reduced_system(some, [&](const auto& system) { return system.force(q); });
   };
   EXPECT_TRUE(is_same(force(loaded), force(model)));
+}
+
+TEST(Reduce, CountsTheMotionsOfAHingeWithoutEnergy) {
+  // A thin plate held along one line of nodes turns about it; its other modes are soft beside the stiffness within it.
+  const TriangleMesh mesh = equilateral_grid(8, 6, 0.1);
+  for (const double thickness : {0.02, 1e-3, 3e-4}) {
+    SCOPED_TRACE(thickness);
+    const std::vector<Index> line = nodes_where(mesh, [](const Point& x) { return x[1] < 1e-6; });
+    const Shell shell = isotropic_shell(mesh, {.young = 1e6, .poisson = 0.4}, thickness, line, 700);
+    for (const std::string subspace : {"extended", "derivatives"}) {
+      SCOPED_TRACE(subspace);
+      ReduceOptions options = quick(60);
+      options.subspace = subspace;
+      ReduceReport report;
+      const ReducedModel model = reduce(shell, options, &report);
+      const ReducedModes modes = reduced_modes(model);
+      EXPECT_EQ(modes.num_zero, 1);
+      EXPECT_EQ(report.rigid_modes, 0);
+      const double softest = modes.omega[1] * modes.omega[1];
+      EXPECT_NEAR(report.exact_eigenvalues[0], softest, 1e-6 * softest);
+      EXPECT_GT(softest, 1e3 * std::pow(modes.omega[0], 2));
+      EXPECT_LT(report.training_error, 0.3);
+      EXPECT_LT(report.held_out_error, 0.3);
+      const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "supple_hinge.supple";
+      save_model(path, model);
+      EXPECT_EQ(reduced_modes(load_model(path)).num_zero, 1);
+    }
+  }
 }
 
 /// Reduced, kept and loaded again, an object of other cells has the same forces, to the bit.

@@ -161,6 +161,18 @@ TEST(ReducedModes, DiagonalizeTheReducedStiffness) {
   EXPECT_THROW((void)reduced_modes(Matrix::Zero(3, 3)).softest_stiffness(), std::invalid_argument);
 }
 
+TEST(ReducedModes, TellMotionsWithoutEnergyFromASoftPartBesideAStiffOne) {
+  const auto zero = [](std::vector<double> eigenvalues, std::optional<Index> known = {}) {
+    return reduced_modes(Eigen::Map<const Vector>(eigenvalues.data(), 5).asDiagonal(), known).num_zero;
+  };
+  EXPECT_EQ(zero({46, 51, 1.4e4, 1e9, 1e13}), 0);  // a rubber bar on steel
+  EXPECT_EQ(zero({-1e-4, 3e-4, 50, 1e6, 1e11}), 2);
+  EXPECT_EQ(zero({1e-4, 3e-4, 50, 1e6, 1e11}, 0), 0);  // if the caller knows
+  EXPECT_EQ(zero({0, 0, 0, 0, 0}), 5);
+  EXPECT_THROW((void)reduced_modes(Vector::Zero(2).asDiagonal(), 0).positive_omega(), std::invalid_argument);
+  EXPECT_THROW((void)reduced_modes(Matrix(0, 0)), std::invalid_argument);
+}
+
 TEST(VibrationModes, OfACantileverFallTowardsTheBeamUnderRefinement) {
   // Linear tets lock in bending, so frequencies come from above; lumping pulls them down by far less. The
   // coarsest meshes are not asymptotic: expected is a monotone fall that slows down.
@@ -316,6 +328,11 @@ TEST_F(Poses, RefuseImpossibleOptions) {
   EXPECT_THROW((void)sample(options), std::invalid_argument);
   for (const double wrong : {0.0, -1.0, std::nan("")}) {
     options.amplitudes = {0.1, wrong};
+    EXPECT_THROW((void)sample(options), std::invalid_argument);
+  }
+  options = some(3);
+  for (const double wrong : {std::nan(""), 1e4}) {
+    options.omega_exponent = wrong;
     EXPECT_THROW((void)sample(options), std::invalid_argument);
   }
 }
