@@ -2,8 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
 #include <sys/stat.h>
 
 namespace supple::test {
@@ -28,6 +32,40 @@ TEST_F(CommandLineTest, ExplainsItself) {
   const Outcome version = supple({"--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.out.rfind("supple ", 0), 0u);
+}
+
+/// The lines of the README that call the command, as words without the call itself.
+std::vector<Arguments> commands_of_readme() {
+  const std::string call = "build/release/app/supple ";
+  std::vector<Arguments> commands;
+  std::ifstream readme(SUPPLE_README);
+  for (std::string line; std::getline(readme, line);) {
+    if (line.rfind(call, 0) != 0) continue;
+    std::istringstream words(line.substr(call.size(), line.find(" #") - call.size()));
+    Arguments& arguments = commands.emplace_back();
+    for (std::string word; words >> std::quoted(word, '\'');) arguments.push_back(word);
+  }
+  return commands;
+}
+
+TEST_F(CommandLineTest, DoesWhatTheReadmeShows) {
+  const std::vector<Arguments> commands = commands_of_readme();
+  ASSERT_GE(commands.size(), 9u);
+  for (Arguments command : commands) {
+    SCOPED_TRACE(testing::PrintToString(command));
+    const auto file = std::ranges::find_if(command, [](const std::string& word) {
+      return word.ends_with(".msh") || word.ends_with(".off") || word.ends_with(".supple") || word.ends_with(".npy");
+    });
+    ASSERT_NE(file, command.end());
+    if (command[1].find(':') == std::string::npos) {
+      expect_refusal(command, {*file, "o such file"});  // the file is the only thing that it misses
+    } else {
+      command.insert(command.end(), {"--poses", "15", "--equilibria", "0", "--held-out", "0"});  // which take long
+      const Outcome outcome = supple(command);
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      EXPECT_TRUE(std::filesystem::exists(folder / *file));
+    }
+  }
 }
 
 TEST_F(CommandLineTest, RefusesWhatItDoesNotKnow) {
