@@ -48,15 +48,12 @@ std::string markdown_table(const std::vector<SelectorSummary>& summaries, const 
 /// What the columns of the table mean.
 inline constexpr std::string_view selector_table_notes =
     "Medians over seeds, the range in brackets. Errors of the force are relative: on the training poses (and "
-    "equilibria), "
-    "on held-out poses as large as the largest of those, and at 0.3 and 0.1 of their amplitude. The softest eigenvalue "
-    "is "
-    "that of the fitted stiffness at rest, relative to the exact one. Processor time is that of all threads. A dash: "
-    "not "
-    "measured, as a model with negative weights cannot be simulated.";
+    "equilibria), on held-out poses as large as the largest of those, and at 0.3 and 0.1 of their amplitude. The "
+    "softest eigenvalue is that of the fitted stiffness at rest, relative to the exact one. Processor time is "
+    "that of all threads. A dash: not measured, as a model with negative weights cannot be simulated.";
 
-/// error-size.svg, error-time.svg, convergence.svg and, with scenes, trajectory-1.svg and so on in a folder; without the
-/// selector "all", whose errors are rounding.
+/// error-size.svg, error-time.svg, convergence.svg and, with scenes, trajectory-1.svg and so on in a folder; without
+/// the selector "all", whose errors are rounding.
 /// \return their names and captions, in order.
 std::vector<std::pair<std::string, std::string>> draw_selector_plots(const std::filesystem::path& folder,
                                                                      std::vector<SelectorRun> runs,

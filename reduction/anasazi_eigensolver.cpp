@@ -2,6 +2,7 @@
 #include <physics/single_threaded_blas.hpp>
 #include <reduction/anasazi_adapter.hpp>
 #include <reduction/eigensolver.hpp>
+#include <reduction/zero_modes.hpp>
 
 #include <AnasaziBasicEigenproblem.hpp>
 #include <AnasaziBlockKrylovSchurSolMgr.hpp>
@@ -20,7 +21,6 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double zero_energy = 1e-13;         // times ‖A‖: below, an eigenvalue of A is taken for zero
-constexpr double zero_gap = 1e-3;             // and zero it is only so far below the next
 constexpr double largest_rigid_force = 1e-6;  // times ‖A‖
 constexpr Index dense_rows = 300;             // up to here a dense solver is as fast
 
@@ -389,10 +389,8 @@ EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, 
     result.residuals[j] = force.col(j).norm() / scale;
     const double rounding = 10 * epsilon * problem.norm / scale;
     converged = converged && result.residuals[j] <= std::max(options.tolerance, rounding);
-    if (result.omega_squared[j] <= zero_energy * problem.norm) ++result.extra_zero_modes;
   }
-  Index& zero = result.extra_zero_modes;  // a soft part beside a stiff one lies low, too, but not far below all others
-  while (0 < zero && zero < r && result.omega_squared[zero - 1] > zero_gap * result.omega_squared[zero]) --zero;
+  result.extra_zero_modes = num_zero_modes(result.omega_squared, zero_energy * problem.norm);
   result.vectors = M_diagonal.cwiseSqrt().cwiseInverse().asDiagonal() * pairs.vectors;
   for (Index j = 0; j < r; ++j) {
     const auto phi = result.vectors.col(j);

@@ -1,4 +1,5 @@
 #include <reduction/reduced_modes.hpp>
+#include <reduction/zero_modes.hpp>
 
 #include <Eigen/Eigenvalues>
 
@@ -8,15 +9,10 @@ ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index>
   require(reduced_stiffness.rows() > 0, "the reduced stiffness is empty");
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(reduced_stiffness);
   if (eigen.info() != Eigen::Success) throw SolverError("eigenvalues of the reduced stiffness did not converge");
-  ReducedModes modes{eigen.eigenvalues().cwiseMax(0).cwiseSqrt(), eigen.eigenvectors(), num_zero.value_or(0)};
-  const double largest = modes.omega.size() > 0 ? modes.omega[modes.omega.size() - 1] : 0;
-  const Index d = modes.omega.size();
-  Index& zero = modes.num_zero;
-  if (!num_zero) {
-    while (zero < d && modes.omega[zero] <= 1e-5 * largest) ++zero;
-    while (0 < zero && zero < d && modes.omega[zero - 1] > std::sqrt(1e-3) * modes.omega[zero]) --zero;
-  }
-  require(zero <= d, "there are more motions without energy than modes");
+  const Vector eigenvalues = eigen.eigenvalues().cwiseMax(0);
+  ReducedModes modes{eigenvalues.cwiseSqrt(), eigen.eigenvectors(), 0};
+  modes.num_zero = num_zero ? *num_zero : num_zero_modes(eigenvalues, 1e-10 * eigenvalues.maxCoeff());
+  require(modes.num_zero <= eigenvalues.size(), "there are more motions without energy than modes");
   for (Index j = 0; j < modes.Phi.cols(); ++j) {  // one sign for every platform
     Index at;
     modes.Phi.col(j).cwiseAbs().maxCoeff(&at);
