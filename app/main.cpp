@@ -1,21 +1,21 @@
-#include <app/compare_command.hpp>
-#include <app/compare_selectors_command.hpp>
-#include <app/edit_command.hpp>
-#include <app/exit_guard.hpp>
-#include <app/fidelity_command.hpp>
-#include <app/info_command.hpp>
-#include <app/reduce_command.hpp>
-#include <app/select_command.hpp>
-#include <app/simulate_command.hpp>
-#include <app/terminal.hpp>
+#include <app/commands/compare_command.hpp>
+#include <app/commands/compare_selectors_command.hpp>
+#include <app/commands/edit_command.hpp>
+#include <app/commands/fidelity_command.hpp>
+#include <app/commands/info_command.hpp>
+#include <app/commands/reduce_command.hpp>
+#include <app/commands/select_command.hpp>
+#include <app/commands/simulate_command.hpp>
+#include <app/report/exit_guard.hpp>
+#include <app/report/terminal.hpp>
 #include <core/check.hpp>
 #include <core/version.hpp>
-#include <io/builtin_meshes.hpp>
-#include <io/builtin_surfaces.hpp>
-#include <io/json_fields.hpp>
-#include <physics/plugin.hpp>
-#include <reduction/named_subspace.hpp>
-#include <sparse/selector_library.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/builtin/builtin_surfaces.hpp>
+#include <io/text/json_fields.hpp>
+#include <physics/body/plugin.hpp>
+#include <reduction/basis/named_subspace.hpp>
+#include <sparse/selectors/selector_library.hpp>
 
 #include <CLI/CLI.hpp>
 

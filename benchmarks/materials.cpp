@@ -3,9 +3,10 @@
 //
 //   $ benchmark_materials
 #include <core/stopwatch.hpp>
-#include <io/builtin_meshes.hpp>
-#include <io/node_sets.hpp>
-#include <reduction/reduce.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <physics/body/solid_model.hpp>
+#include <reduction/pipeline/reduce.hpp>
 
 #include <algorithm>
 #include <cstdio>

@@ -3,7 +3,7 @@
 // seeds. Arguments: s, as many as wanted (50 100 200); one thread, so that times compare.
 
 #include <core/parallel.hpp>
-#include <sparse/selectors.hpp>
+#include <sparse/selectors/selectors.hpp>
 #include <tests/sparse/problems.hpp>
 
 #include <cstdio>

@@ -6,7 +6,7 @@
 // 2010 (NIHT), Foucart 2011 (HTP), Donoho & Tanner 2010 (non-negative signals).
 
 #include <core/parallel.hpp>
-#include <sparse/selectors.hpp>
+#include <sparse/selectors/selectors.hpp>
 
 #include <cstdio>
 #include <cstdlib>

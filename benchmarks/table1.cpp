@@ -5,11 +5,11 @@
 //   $ benchmark_table1 dragon.msh --fix 'y<4%' --recipe paper --points 150
 #include <core/random.hpp>
 #include <core/stopwatch.hpp>
-#include <io/builtin_meshes.hpp>
-#include <io/mesh_reader.hpp>
-#include <io/node_sets.hpp>
-#include <reduction/pull_test.hpp>
-#include <reduction/reduce.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/mesh/mesh_reader.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <reduction/pipeline/reduce.hpp>
+#include <reduction/training/pull_test.hpp>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -115,9 +115,9 @@ int main(int argc, char** argv) {
 
   const double diagonal = bounding_box(mesh.nodes).diagonal();
   ReducedModel unfitted = model;
-  unfitted.indices.resize(mesh.num_tets());
+  unfitted.indices.resize(mesh.num_cells());
   std::iota(unfitted.indices.begin(), unfitted.indices.end(), Index{0});
-  unfitted.weights = Vector::Ones(mesh.num_tets());
+  unfitted.weights = Vector::Ones(mesh.num_cells());
   with_reduced_system(model, [&](const auto& system) {
     Random random(7);
     Vector q(system.dim()), f(system.dim());

@@ -5,13 +5,14 @@
 //   $ benchmark_table3 dragon.msh --fix 'y<4%' --modes 15
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
-#include <io/builtin_meshes.hpp>
-#include <io/mesh_reader.hpp>
-#include <io/node_sets.hpp>
-#include <physics/body.hpp>
-#include <physics/full_system.hpp>
-#include <reduction/modal_derivatives.hpp>
-#include <reduction/skinning_modes.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/mesh/mesh_reader.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <physics/body/body.hpp>
+#include <physics/body/force_models.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/basis/modal_derivatives.hpp>
+#include <reduction/basis/skinning_modes.hpp>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -39,7 +40,7 @@ int main(int argc, char** argv) {
   const std::vector<Index> fixed = select_nodes(mesh.nodes, fix);
   const Solid solid = isotropic_solid(mesh, {.young = 1e5, .poisson = 0.4}, fixed, law);
 
-  nlohmann::json out{{"mesh", mesh_name}, {"nodes", mesh.num_nodes()}, {"tets", mesh.num_tets()}, {"r", num_modes}};
+  nlohmann::json out{{"mesh", mesh_name}, {"nodes", mesh.num_nodes()}, {"tets", mesh.num_cells()}, {"r", num_modes}};
   with_force_model(solid, [&]<typename Model>(const std::shared_ptr<const Model>& model) {
     const FullSystem<Model> system(model, solid.nodal_mass(), fixed);
     const RestState object = rest_state(system);

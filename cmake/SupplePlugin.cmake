@@ -1,4 +1,4 @@
-# supple_plugin(<name> <source>...): a shared library that programs of Supple load with --plugin, see physics/plugin.hpp.
+# supple_plugin(<name> <source>...): a shared library that programs of Supple load with --plugin, see physics/body/plugin.hpp.
 function(supple_plugin name)
   add_library(${name} MODULE ${ARGN})
   target_link_libraries(${name} PRIVATE supple::physics)

@@ -4,6 +4,7 @@
 #include <core/tensor_file.hpp>
 
 #include <nlohmann/json.hpp>
+#define XXH_INLINE_ALL  // nothing to link
 #include <xxhash.h>
 
 #include <algorithm>

@@ -3,9 +3,9 @@
 //   $ example_01_reduce_and_simulate
 //   63 of 2304 tets stand for all: error 0.0431 in training, 0.0266 held out
 //   after 1.00 s the tip has moved by (-0.14, -0.40, 0.03) m
-#include <io/builtin_meshes.hpp>
-#include <io/node_sets.hpp>
-#include <reduction/reduce.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <reduction/pipeline/reduce.hpp>
 
 #include <cstdio>
 

@@ -3,8 +3,8 @@
 //
 //   $ example_02_spring_chain
 //   a chain of 20 springs swings for 2 s; energy drifts by 0.4 % of what was exchanged
-#include <physics/full_system.hpp>
-#include <physics/newmark.hpp>
+#include <physics/system/full_system.hpp>
+#include <physics/time/newmark.hpp>
 
 #include <cmath>
 #include <cstdio>

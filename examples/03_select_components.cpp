@@ -1,5 +1,5 @@
 // I have a matrix and a vector, and want few columns: min ‖A w − b‖, w ≥ 0, at most s weights. No mesh
-// involved. From files: A = read_matrix("A.npy"), b = read_vector("b.npy") of <io/matrix_file.hpp>, or the
+// involved. From files: A = read_matrix("A.npy"), b = read_vector("b.npy") of <io/table/matrix_file.hpp>, or the
 // command 'supple select'.
 //
 // Sample run:
@@ -7,8 +7,8 @@
 //   with columns 3 and 7 kept: 40, error 2.7e-01
 //   error of at most 0.2: 52 columns
 
-#include <sparse/baselines.hpp>
-#include <sparse/nn_sp.hpp>
+#include <sparse/selectors/baselines.hpp>
+#include <sparse/selectors/nn_sp.hpp>
 
 #include <cstdio>
 

@@ -5,12 +5,13 @@
 //   1800 unknowns in full, 72 reduced; 2304 tets, 80 evaluated
 //   tip of the bar: largest deviation 1.4 % of its amplitude; a step takes 31.2 ms in full, 0.02 ms reduced
 #include <core/stopwatch.hpp>
-#include <io/builtin_meshes.hpp>
-#include <io/csv.hpp>
-#include <io/node_sets.hpp>
-#include <io/plot.hpp>
-#include <physics/full_system.hpp>
-#include <reduction/reduce.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <io/picture/plot.hpp>
+#include <io/table/csv.hpp>
+#include <physics/body/solid_model.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/pipeline/reduce.hpp>
 
 #include <cstdio>
 
@@ -55,7 +56,7 @@ int main() {
     return simulate(system, NonlinearSolver::Bfgs, [&](const Vector& q) { return system.subspace().at(watched, q); });
   });
 
-  std::printf("%td unknowns in full, %td reduced; %td tets, %zu evaluated\n", full.dim(), model.dim(), mesh.num_tets(),
+  std::printf("%td unknowns in full, %td reduced; %td tets, %zu evaluated\n", full.dim(), model.dim(), mesh.num_cells(),
               model.indices.size());
   const double deviation = (motion.tip - reference.tip).cwiseAbs().maxCoeff() / reference.tip.cwiseAbs().maxCoeff();
   std::printf(

@@ -3,11 +3,12 @@
 //
 //   $ example_05_two_materials
 //   reduced against full: 0.8 % of the displacement
-#include <io/builtin_meshes.hpp>
-#include <io/node_sets.hpp>
-#include <io/picture.hpp>
-#include <physics/full_system.hpp>
-#include <reduction/reduce.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <io/picture/picture.hpp>
+#include <physics/body/solid_model.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/pipeline/reduce.hpp>
 
 #include <cstdio>
 
@@ -31,7 +32,7 @@ int main() {
   const std::vector<double> soft = material_law("stvk").values({.young = 1e4, .poisson = 0.4});
   solid.parameters.conservativeResize(2, Eigen::NoChange);
   solid.parameters.row(1) = Eigen::Map<const Eigen::RowVectorXd>(soft.data(), static_cast<Index>(soft.size()));
-  for (const Tet& tet : mesh.tets) {  // stiff below, soft above
+  for (const Tet& tet : mesh.cells) {  // stiff below, soft above
     double y = 0;
     for (const Index v : tet) y += mesh.nodes(v, 1) / 4;
     solid.material_of_cell.push_back(y > bounding_box(mesh.nodes).extent().y() / 2 ? 1 : 0);
@@ -46,8 +47,8 @@ int main() {
   std::printf("reduced against full: %.1f %% of the displacement\n", 100 * deviation);
 
   Vector young = Vector::Zero(mesh.num_nodes());
-  for (Index e = 0; e < mesh.num_tets(); ++e)
-    for (const Index v : mesh.tets[e]) young[v] = std::max(young[v], solid.material_of_cell[e] == 0 ? 8e4 : 1e4);
+  for (Index e = 0; e < mesh.num_cells(); ++e)
+    for (const Index v : mesh.cells[e]) young[v] = std::max(young[v], solid.material_of_cell[e] == 0 ? 8e4 : 1e4);
   const std::vector<Triangle> surface = boundary_faces(mesh);
   std::vector<PictureObject> objects;
   for (const auto& [caption, displacement] :

@@ -1,12 +1,12 @@
 // Deformation-based editing: grasp a tube at both ends, bend it, and see how little the elastic energy that the reduced
 // model found differs from the full one's.
 
-#include <io/builtin_surfaces.hpp>
-#include <io/node_sets.hpp>
-#include <io/picture.hpp>
-#include <physics/full_system.hpp>
-#include <reduction/editor.hpp>
-#include <reduction/reduce.hpp>
+#include <io/builtin/builtin_surfaces.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <io/picture/picture.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/editing/editor.hpp>
+#include <reduction/pipeline/reduce.hpp>
 
 #include <cstdio>
 #include <numbers>

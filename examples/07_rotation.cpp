@@ -1,13 +1,14 @@
 // Why extended modes (Figure 5 of the paper): a rotation in the linear modes of a cube inflates it; under all linear maps of
 // the same modes it is there exactly.
 
-#include <io/builtin_meshes.hpp>
-#include <io/picture.hpp>
-#include <physics/full_system.hpp>
-#include <physics/mass.hpp>
-#include <physics/tet_elasticity.hpp>
-#include <reduction/handles.hpp>
-#include <reduction/modal_basis.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/picture/picture.hpp>
+#include <physics/mesh/mass.hpp>
+#include <physics/mesh/tet_mesh.hpp>
+#include <physics/model/tet_elasticity.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/basis/modal_basis.hpp>
+#include <reduction/editing/handles.hpp>
 
 #include <cstdio>
 #include <numbers>
@@ -37,7 +38,7 @@ int main() {
     TetMesh moved = mesh;
     moved.nodes += Eigen::Map<const Points>(u.data(), mesh.num_nodes(), 3);
     double volume = 0;
-    for (Index e = 0; e < moved.num_tets(); ++e) volume += tet_volume(moved, e);
+    for (Index e = 0; e < moved.num_cells(); ++e) volume += tet_volume(moved, e);
     error = (u - rotation).norm() / rotation.norm();
     std::printf("%s: d = %ld, volume %.3f of 1, energy %.2g J, off by %.1e\n", name, static_cast<long>(basis.dim()),
                 volume, system.energy(u), error);

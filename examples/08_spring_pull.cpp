@@ -1,12 +1,13 @@
 // A spring pulls at a bar (Figure 8 of the paper): the full system, the reduced model with fitted forces, and as many linear
 // modes with exact forces.
 
-#include <io/builtin_meshes.hpp>
-#include <io/node_sets.hpp>
-#include <io/picture.hpp>
-#include <physics/static_solver.hpp>
-#include <reduction/galerkin_system.hpp>
-#include <reduction/reduce.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <io/picture/picture.hpp>
+#include <physics/body/solid_model.hpp>
+#include <physics/statics/static_solver.hpp>
+#include <reduction/pipeline/reduce.hpp>
+#include <reduction/system/galerkin_system.hpp>
 
 #include <cstdio>
 

@@ -7,18 +7,18 @@
 //   NN-OMP 60 of 9216 tets in 0.9 s: error 0.0004 in training, 0.0026 held out, 0.0041 on the way; a step takes 0.03 ms
 //   NN-HTP 60 of 9216 tets in 0.0 s: error 0.0007 in training, 0.0024 held out, 0.0039 on the way; a step takes 0.03 ms
 #include <core/stopwatch.hpp>
-#include <io/builtin_meshes.hpp>
-#include <io/node_sets.hpp>
-#include <physics/first_order.hpp>
-#include <physics/full_system.hpp>
-#include <physics/heat_conduction.hpp>
-#include <physics/mass.hpp>
-#include <reduction/force_fitting.hpp>
-#include <reduction/pca_basis.hpp>
-#include <reduction/reduced_system.hpp>
-#include <reduction/training_poses.hpp>
-#include <sparse/nn_htp.hpp>
-#include <sparse/nn_omp.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <physics/heat/heat_conduction.hpp>
+#include <physics/mesh/mass.hpp>
+#include <physics/system/full_system.hpp>
+#include <physics/time/first_order.hpp>
+#include <reduction/basis/pca_basis.hpp>
+#include <reduction/system/reduced_system.hpp>
+#include <reduction/training/force_fitting.hpp>
+#include <reduction/training/training_poses.hpp>
+#include <sparse/selectors/nn_htp.hpp>
+#include <sparse/selectors/nn_omp.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -96,7 +96,7 @@ int main() {
     std::printf(
         "%-6s %td of %td tets in %.1f s: error %.4f in training, %.4f held out, %.4f on the way; a step takes %.2f "
         "ms\n",
-        name, selected.size(), mesh.num_tets(), selected.report.seconds, selected.report.training_error,
+        name, selected.size(), mesh.num_cells(), selected.report.seconds, selected.report.training_error,
         held_out.error(selected.indices, selected.weights), error, 1e3 * heating.seconds_per_step);
     good = good && error < 0.05;
   };

@@ -3,10 +3,10 @@
 //   $ example_10_own_material
 //   Gent's rubber: 60 of 1536 tets, error 0.031 in training, 0.022 held out; the tip sags by 0.060 m
 //   neo-Hookean:   60 of 1536 tets, error 0.031 in training, 0.022 held out; the tip sags by 0.060 m
-#include <io/builtin_meshes.hpp>
-#include <io/node_sets.hpp>
-#include <physics/static_solver.hpp>
-#include <reduction/reduce.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <physics/statics/static_solver.hpp>
+#include <reduction/pipeline/reduce.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -3,14 +3,14 @@
 //   $ example_11_own_element
 //   2048 wedges: 80 of them stand for all, error 0.02 in training, 0.01 held out
 //   sag of the corner: full 0.052 m, reduced 0.051 m
-#include <io/builtin_surfaces.hpp>
-#include <io/node_sets.hpp>
-#include <physics/mass.hpp>
-#include <physics/neo_hookean.hpp>
-#include <physics/solid_elasticity.hpp>
-#include <physics/static_solver.hpp>
-#include <reduction/modal_basis.hpp>
-#include <reduction/reduce_system.hpp>
+#include <io/builtin/builtin_surfaces.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <physics/material/neo_hookean.hpp>
+#include <physics/mesh/mass.hpp>
+#include <physics/model/solid_elasticity.hpp>
+#include <physics/statics/static_solver.hpp>
+#include <reduction/basis/modal_basis.hpp>
+#include <reduction/pipeline/reduce_system.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -2,8 +2,8 @@
 // A selector of one's own: looks at all components, and in each round adds a batch of those whose direction fits what
 // is left best.
 
-#include <sparse/hard_threshold.hpp>
-#include <sparse/selection_run.hpp>
+#include <sparse/selection/hard_threshold.hpp>
+#include <sparse/selection/selection_run.hpp>
 
 struct BatchedOmp {
   supple::Index batch = 10;

@@ -1,7 +1,7 @@
 #pragma once
 // A material from its energy alone: Gent's rubber, whose chains lock when they are stretched to the limit.
 
-#include <physics/materials.hpp>
+#include <physics/material/materials.hpp>
 
 #include <limits>
 

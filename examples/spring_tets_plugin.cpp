@@ -1,7 +1,8 @@
 // An element of one's own on the nodes of tets, for programs that are built already: each tet is six springs.
 //   $ supple reduce bar --plugin ./libspring_tets_plugin.so --material spring-tets --fix 'x<1%' -o bar.supple
-#include <physics/plugin.hpp>
-#include <physics/spring_model.hpp>
+#include <physics/body/plugin.hpp>
+#include <physics/mesh/tet_mesh.hpp>
+#include <physics/model/spring_model.hpp>
 
 using namespace supple;
 
@@ -50,12 +51,12 @@ class SpringTets {
   };
 
   SpringTets(const TetMesh& mesh, const std::vector<double>& moduli) : mesh_(mesh) {
-    for (Index e = 0; e < mesh.num_tets(); ++e) {
+    for (Index e = 0; e < mesh.num_cells(); ++e) {
       const double c = moduli.size() == 1 ? moduli[0] : moduli[e], volume = tet_volume(mesh, e);
       require(volume > 0, "tet " + std::to_string(e) + " has no volume");
       Term<double> term;
       for (int k = 0; k < 6; ++k) {
-        const Point edge = mesh.nodes.row(mesh.tets[e][edges[k][1]]) - mesh.nodes.row(mesh.tets[e][edges[k][0]]);
+        const Point edge = mesh.nodes.row(mesh.cells[e][edges[k][1]]) - mesh.nodes.row(mesh.cells[e][edges[k][0]]);
         term.springs[k] = {{edge[0], edge[1], edge[2]}, edge.norm(), c * volume / edge.squaredNorm()};
       }
       terms_.push_back(term);
@@ -64,8 +65,8 @@ class SpringTets {
 
   Index num_nodes() const { return mesh_.num_nodes(); }
   const Points& rest_positions() const { return mesh_.nodes; }
-  Index num_components() const { return mesh_.num_tets(); }
-  std::span<const Index, 4> stencil(Index i) const { return mesh_.tets[i]; }
+  Index num_components() const { return mesh_.num_cells(); }
+  std::span<const Index, 4> stencil(Index i) const { return mesh_.cells[i]; }
   const Term<double>& term(Index i) const { return terms_[i]; }
   double energy(Index i, const Local<12>& u) const { return terms_[i].energy(u); }
   Local<12> force(Index i, const Local<12>& u) const { return terms_[i].force(u); }

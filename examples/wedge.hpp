@@ -1,7 +1,7 @@
 #pragma once
 // An element type on a page: the wedge, a triangle drawn out along a line. Six nodes.
 
-#include <physics/elements.hpp>
+#include <physics/mesh/elements.hpp>
 
 struct Wedge {
   static constexpr std::string_view name = "wedge";  // in messages

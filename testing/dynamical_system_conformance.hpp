@@ -12,7 +12,7 @@
 
 #include <core/check.hpp>
 #include <core/parallel.hpp>
-#include <physics/dynamical_system.hpp>
+#include <physics/system/dynamical_system.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
 

@@ -9,8 +9,8 @@
 ///
 /// Random states displace each coordinate by up to 0.12 length; forces (and energy) must be defined there.
 
-#include <physics/explain_force_model.hpp>
-#include <physics/term_pack.hpp>
+#include <physics/model/explain_force_model.hpp>
+#include <physics/model/term_pack.hpp>
 #include <testing/agreement.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>

@@ -13,7 +13,7 @@
 /// The states of the suite are F = R (I + D) with rotations R and random D, |D_ij| ≤ 0.3, det F > 0; energy, stress
 /// and tangent must be finite and smooth there.
 
-#include <physics/explain_material.hpp>
+#include <physics/material/explain_material.hpp>
 #include <testing/agreement.hpp>
 #include <testing/random_vectors.hpp>
 

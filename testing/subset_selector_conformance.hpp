@@ -5,8 +5,8 @@
 /// negative says so by `static constexpr Signs signs = Signs::Any;`.
 
 #include <core/parallel.hpp>
-#include <sparse/explain_subset_selector.hpp>
-#include <sparse/selectors.hpp>
+#include <sparse/selection/explain_subset_selector.hpp>
+#include <sparse/selectors/selectors.hpp>
 #include <testing/agreement.hpp>
 #include <testing/random_problems.hpp>
 

@@ -9,9 +9,9 @@
 ///     INSTANTIATE_TYPED_TEST_SUITE_P(MyBuilder, SubspaceBuilderConformance, MyCase);
 
 #include <core/parallel.hpp>
-#include <reduction/explain_subspace_builder.hpp>
-#include <reduction/modal_basis.hpp>
-#include <reduction/reduced_modes.hpp>
+#include <reduction/basis/modal_basis.hpp>
+#include <reduction/subspace/explain_subspace_builder.hpp>
+#include <reduction/system/reduced_modes.hpp>
 #include <testing/agreement.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>

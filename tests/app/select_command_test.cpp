@@ -1,5 +1,5 @@
 #include <core/random.hpp>
-#include <sparse/selector_library.hpp>
+#include <sparse/selectors/selector_library.hpp>
 #include <tests/app/supple_process.hpp>
 #include <tests/sparse/problems.hpp>
 

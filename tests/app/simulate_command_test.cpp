@@ -1,5 +1,5 @@
-#include <io/csv.hpp>
-#include <io/image.hpp>
+#include <io/picture/image.hpp>
+#include <io/table/csv.hpp>
 #include <tests/app/supple_process.hpp>
 
 #include <gmock/gmock.h>

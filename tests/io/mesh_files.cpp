@@ -39,9 +39,9 @@ constexpr CellWords words = size == 4   ? CellWords{4, 10, "Tetrahedra", "TET"}
                             : size == 8 ? CellWords{5, 12, "Hexahedra", "CUBIC"}
                                         : CellWords{11, 24, "TetrahedraP2", ""};
 template <typename Mesh>
-constexpr CellWords words_of = words<ElementOf<Mesh>::num_nodes>;
+constexpr CellWords words_of = words<Mesh::nodes_per_cell>;
 template <typename Mesh>
-constexpr Index cell_size = ElementOf<Mesh>::num_nodes;
+constexpr Index cell_size = Mesh::nodes_per_cell;
 
 /// " a b c d", counted from `first`.
 template <std::size_t size>
@@ -83,10 +83,10 @@ std::string gmsh_22(const Mesh& mesh) {
   std::string s = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + physical_names(mesh);
   s += "$Nodes\n" + std::to_string(mesh.num_nodes()) + "\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += std::to_string(v + 1) + " " + xyz(mesh, v) + "\n";
-  s += "$EndNodes\n$Elements\n" + std::to_string(num_cells(mesh) + 1) + "\n1 15 2 7 7 1\n";
-  for (Index e = 0; e < num_cells(mesh); ++e)
+  s += "$EndNodes\n$Elements\n" + std::to_string(mesh.num_cells() + 1) + "\n1 15 2 7 7 1\n";
+  for (Index e = 0; e < mesh.num_cells(); ++e)
     s += std::to_string(e + 2) + " " + std::to_string(words_of<Mesh>.gmsh) + " 2 " + std::to_string(region(mesh, e)) +
-         " 1" + corners(in_gmsh(cells_of(mesh)[e]), 1) + "\n";
+         " 1" + corners(in_gmsh(mesh.cells[e]), 1) + "\n";
   return s + "$EndElements\n";
 }
 
@@ -98,12 +98,12 @@ std::string gmsh_22_binary(const Mesh& mesh, bool big) {
     s += raw(static_cast<std::int32_t>(v + 1), big);
     for (int c = 0; c < 3; ++c) s += raw(mesh.nodes(v, c), big);
   }
-  s += "\n$EndNodes\n$Elements\n" + std::to_string(num_cells(mesh)) + "\n";
+  s += "\n$EndNodes\n$Elements\n" + std::to_string(mesh.num_cells()) + "\n";
   const auto integer = [&](Index value) { s += raw(static_cast<std::int32_t>(value), big); };
-  integer(words_of<Mesh>.gmsh), integer(num_cells(mesh)), integer(2);
-  for (Index e = 0; e < num_cells(mesh); ++e) {
+  integer(words_of<Mesh>.gmsh), integer(mesh.num_cells()), integer(2);
+  for (Index e = 0; e < mesh.num_cells(); ++e) {
     integer(e + 1), integer(region(mesh, e)), integer(1);
-    for (const Index v : in_gmsh(cells_of(mesh)[e])) integer(v + 1);
+    for (const Index v : in_gmsh(mesh.cells[e])) integer(v + 1);
   }
   return s + "\n$EndElements\n$ElementData\nsome bytes: " + raw(std::int32_t{0x24456e64}) + "$EndElementData\n";
 }
@@ -148,17 +148,17 @@ std::string gmsh_41(const Mesh& mesh, bool binary) {
   }
   s += "\n$EndNodes\n$Elements\n";
   std::vector<std::vector<Index>> blocks;  // runs of one region, to keep the order of tets
-  for (Index e = 0; e < num_cells(mesh); ++e) {
+  for (Index e = 0; e < mesh.num_cells(); ++e) {
     if (blocks.empty() || region(mesh, blocks.back()[0]) != region(mesh, e)) blocks.emplace_back();
     blocks.back().push_back(e);
   }
-  size(static_cast<Index>(blocks.size())), size(num_cells(mesh)), size(1), size(num_cells(mesh));
+  size(static_cast<Index>(blocks.size())), size(mesh.num_cells()), size(1), size(mesh.num_cells());
   for (const std::vector<Index>& block : blocks) {
     integer(3), integer(10 + region(mesh, block[0])), integer(words_of<Mesh>.gmsh),
         size(static_cast<Index>(block.size()));
     for (const Index e : block) {
       size(e + 1);
-      for (const Index v : in_gmsh(cells_of(mesh)[e])) size(v + 1);
+      for (const Index v : in_gmsh(mesh.cells[e])) size(v + 1);
     }
   }
   return s + "\n$EndElements\n";
@@ -170,9 +170,9 @@ std::string medit(const Mesh& mesh) {
       "MeshVersionFormatted 2\n# a comment\nDimension 3\nVertices\n" + std::to_string(mesh.num_nodes()) + "\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += xyz(mesh, v) + " 0\n";
   s += "RequiredVertices\n2\n1\n2\nTriangles\n1\n1 2 3 9\n" + std::string(words_of<Mesh>.medit) + "\n" +
-       std::to_string(num_cells(mesh)) + "\n";
-  for (Index e = 0; e < num_cells(mesh); ++e)
-    s += corners(in_some_order(cells_of(mesh)[e]), 1).substr(1) + " " + std::to_string(region(mesh, e)) + "\n";
+       std::to_string(mesh.num_cells()) + "\n";
+  for (Index e = 0; e < mesh.num_cells(); ++e)
+    s += corners(in_some_order(mesh.cells[e]), 1).substr(1) + " " + std::to_string(region(mesh, e)) + "\n";
   return s + "End\n";
 }
 
@@ -185,9 +185,9 @@ std::string tetgen_node(const Mesh& mesh, Index first) {
 
 template <typename Mesh>
 std::string tetgen_ele(const Mesh& mesh, Index first) {
-  std::string s = std::to_string(num_cells(mesh)) + " " + std::to_string(cell_size<Mesh>) + " 1\n\n";
-  for (Index e = 0; e < num_cells(mesh); ++e)
-    s += std::to_string(e + first) + corners(in_some_order(cells_of(mesh)[e]), first) + " " +
+  std::string s = std::to_string(mesh.num_cells()) + " " + std::to_string(cell_size<Mesh>) + " 1\n\n";
+  for (Index e = 0; e < mesh.num_cells(); ++e)
+    s += std::to_string(e + first) + corners(in_some_order(mesh.cells[e]), first) + " " +
          std::to_string(region(mesh, e)) + "\n";
   return s;
 }
@@ -196,13 +196,13 @@ template <typename Mesh>
 std::string vega(const Mesh& mesh) {
   std::string s = "# Vega\n*VERTICES\n" + std::to_string(mesh.num_nodes()) + " 3 0 0\n";
   for (Index v = 0; v < mesh.num_nodes(); ++v) s += std::to_string(v + 1) + " " + xyz(mesh, v) + "\n";
-  s += "*ELEMENTS\n" + std::string(words_of<Mesh>.vega) + "\n" + std::to_string(num_cells(mesh)) + " " +
+  s += "*ELEMENTS\n" + std::string(words_of<Mesh>.vega) + "\n" + std::to_string(mesh.num_cells()) + " " +
        std::to_string(cell_size<Mesh>) + " 0\n";
-  for (Index e = 0; e < num_cells(mesh); ++e) s += std::to_string(e + 1) + corners(cells_of(mesh)[e], 1) + "\n";
+  for (Index e = 0; e < mesh.num_cells(); ++e) s += std::to_string(e + 1) + corners(mesh.cells[e], 1) + "\n";
   s += "*MATERIAL rubber\nENU, 1000, 1e6, 0.45\n";
   for (const auto& [tag, name] : mesh.region_names) {
     s += "*SET " + name + "\n";
-    for (Index e = 0, in_line = 0; e < num_cells(mesh); ++e)
+    for (Index e = 0, in_line = 0; e < mesh.num_cells(); ++e)
       if (region(mesh, e) == tag) s += std::to_string(e + 1) + (++in_line % 8 == 0 ? ",\n" : ", ");
     s += "\n*REGION\n" + name + ", rubber\n";
   }
@@ -223,28 +223,28 @@ std::string legacy_vtk(const Mesh& mesh, bool binary, bool version_5) {
       s += text(value) + " ";
   };
   for (Index k = 0; k < mesh.nodes.size(); ++k) put(mesh.nodes.data()[k]);
-  const std::string m = std::to_string(num_cells(mesh));
+  const std::string m = std::to_string(mesh.num_cells());
   if (version_5) {
-    s += "\nMETADATA\nINFORMATION 0\n\nCELLS " + std::to_string(num_cells(mesh) + 1) + " " +
-         std::to_string(cell_size<Mesh> * num_cells(mesh)) + "\nOFFSETS vtktypeint64\n";
-    for (std::int64_t e = 0; e <= num_cells(mesh); ++e) put(cell_size<Mesh> * e);
+    s += "\nMETADATA\nINFORMATION 0\n\nCELLS " + std::to_string(mesh.num_cells() + 1) + " " +
+         std::to_string(cell_size<Mesh> * mesh.num_cells()) + "\nOFFSETS vtktypeint64\n";
+    for (std::int64_t e = 0; e <= mesh.num_cells(); ++e) put(cell_size<Mesh> * e);
     s += "\nCONNECTIVITY vtktypeint64\n";
-    for (const auto& cell : cells_of(mesh))
+    for (const auto& cell : mesh.cells)
       for (const Index v : cell) put(static_cast<std::int64_t>(v));
   } else {
-    s += "\nCELLS " + m + " " + std::to_string((cell_size<Mesh> + 1) * num_cells(mesh)) + "\n";
-    for (const auto& cell : cells_of(mesh)) {
+    s += "\nCELLS " + m + " " + std::to_string((cell_size<Mesh> + 1) * mesh.num_cells()) + "\n";
+    for (const auto& cell : mesh.cells) {
       put(static_cast<std::int32_t>(cell_size<Mesh>));
       for (const Index v : cell) put(static_cast<std::int32_t>(v));
     }
   }
   s += "\nCELL_TYPES " + m + "\n";
-  for (Index e = 0; e < num_cells(mesh); ++e) put(std::int32_t{words_of<Mesh>.vtk});
+  for (Index e = 0; e < mesh.num_cells(); ++e) put(std::int32_t{words_of<Mesh>.vtk});
   s += "\nCELL_DATA " + m + "\n";
   s += version_5 ? "FIELD FieldData 2\nother 2 " + m + " float\n" : "SCALARS other float\nLOOKUP_TABLE default\n";
-  for (Index e = 0; e < (version_5 ? 2 : 1) * num_cells(mesh); ++e) put(0.5f);
+  for (Index e = 0; e < (version_5 ? 2 : 1) * mesh.num_cells(); ++e) put(0.5f);
   s += version_5 ? "\nregion 1 " + m + " int\n" : "\nSCALARS region int 1\nLOOKUP_TABLE default\n";
-  for (Index e = 0; e < num_cells(mesh); ++e) put(static_cast<std::int32_t>(region(mesh, e)));
+  for (Index e = 0; e < mesh.num_cells(); ++e) put(static_cast<std::int32_t>(region(mesh, e)));
   return s + "\n";
 }
 
@@ -276,11 +276,11 @@ class VtuWriter {
         (style_.wide_header ? "UInt64" : "UInt32") + "\"" +
         (style_.zlib ? " compressor=\"vtkZLibDataCompressor\"" : "") +
         ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(mesh_.num_nodes()) + "\" NumberOfCells=\"" +
-        std::to_string(num_cells(mesh_)) + "\">\n";
+        std::to_string(mesh_.num_cells()) + "\">\n";
     std::string points, connectivity, offsets, types, regions;
     for (Index k = 0; k < mesh_.nodes.size(); ++k) points += raw(mesh_.nodes.data()[k], style_.big_endian);
-    for (Index e = 0; e < num_cells(mesh_); ++e) {
-      for (const Index v : cells_of(mesh_)[e]) connectivity += raw(static_cast<std::int32_t>(v), style_.big_endian);
+    for (Index e = 0; e < mesh_.num_cells(); ++e) {
+      for (const Index v : mesh_.cells[e]) connectivity += raw(static_cast<std::int32_t>(v), style_.big_endian);
       offsets += raw(std::int64_t{cell_size<Mesh> * (e + 1)}, style_.big_endian);
       types += raw(static_cast<std::uint8_t>(words_of<Mesh>.vtk));
       regions += raw(static_cast<std::int16_t>(region(mesh_, e)), style_.big_endian);
@@ -338,8 +338,8 @@ template <typename Mesh>
 std::string vtu_ascii(const Mesh& mesh) {
   std::string points, connectivity, offsets, types, regions;
   for (Index v = 0; v < mesh.num_nodes(); ++v) points += xyz(mesh, v) + "\n";
-  for (Index e = 0; e < num_cells(mesh); ++e) {
-    connectivity += corners(cells_of(mesh)[e], 0) + "\n";
+  for (Index e = 0; e < mesh.num_cells(); ++e) {
+    connectivity += corners(mesh.cells[e], 0) + "\n";
     offsets += std::to_string(cell_size<Mesh> * (e + 1)) + " ";
     types += std::to_string(words_of<Mesh>.vtk) + " ";
     regions += std::to_string(region(mesh, e)) + " ";
@@ -349,7 +349,7 @@ std::string vtu_ascii(const Mesh& mesh) {
   };
   return "<VTKFile type=\"UnstructuredGrid\">\n<!-- a comment -->\n<UnstructuredGrid><Piece "
          "NumberOfPoints=\"" +
-         std::to_string(mesh.num_nodes()) + "\" NumberOfCells=\"" + std::to_string(num_cells(mesh)) + "\">\n<Points>" +
+         std::to_string(mesh.num_nodes()) + "\" NumberOfCells=\"" + std::to_string(mesh.num_cells()) + "\">\n<Points>" +
          array("Points\" NumberOfComponents=\"3", points) + "</Points><Cells>" + array("connectivity", connectivity) +
          array("offsets", offsets) + array("types", types) + "</Cells><CellData>" + array("Region", regions) +
          "</CellData></Piece></UnstructuredGrid></VTKFile>\n";

@@ -2,7 +2,7 @@
 /// \file Writes meshes in every format that Supple reads, each straight from its specification and sharing no
 /// code with the readers.
 
-#include <physics/cell_mesh.hpp>
+#include <physics/mesh/cell_mesh.hpp>
 
 #include <filesystem>
 #include <ostream>

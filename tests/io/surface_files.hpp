@@ -2,7 +2,7 @@
 /// \file Writes surfaces in every format that Supple reads, each straight from its specification and sharing
 /// no code with the readers.
 
-#include <physics/triangle_mesh.hpp>
+#include <physics/mesh/triangle_mesh.hpp>
 #include <tests/io/mesh_files.hpp>
 
 namespace supple::test {

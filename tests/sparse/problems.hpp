@@ -2,7 +2,7 @@
 /// \file Problems whose answers are known or hard to get right.
 
 #include <core/random.hpp>
-#include <sparse/fitting_problem.hpp>
+#include <sparse/problem/fitting_problem.hpp>
 #include <testing/random_problems.hpp>
 
 #include <atomic>

@@ -1,9 +1,9 @@
 #pragma once
 /// \file Bars of irregular tets that the tests of the reduction floor share.
 
-#include <physics/full_system.hpp>
-#include <physics/mass.hpp>
-#include <physics/tet_elasticity.hpp>
+#include <physics/mesh/mass.hpp>
+#include <physics/model/tet_elasticity.hpp>
+#include <physics/system/full_system.hpp>
 #include <tests/support/meshes.hpp>
 
 namespace supple::test {
@@ -38,9 +38,9 @@ inline StvkBar two_bars(bool first_is_clamped) {
   const std::vector<Index> fixed = first_is_clamped ? bar_end(mesh) : std::vector<Index>{};
   mesh.nodes.conservativeResize(n + other.num_nodes(), 3);
   mesh.nodes.bottomRows(other.num_nodes()) = other.nodes.rowwise() + Eigen::RowVector3d(2, 1, 0);
-  for (Tet tet : other.tets) {
+  for (Tet tet : other.cells) {
     for (Index& v : tet) v += n;
-    mesh.tets.push_back(tet);
+    mesh.cells.push_back(tet);
   }
   return {TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35})),
           lumped_mass(mesh, 1000.0), fixed};

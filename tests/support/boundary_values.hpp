@@ -1,7 +1,7 @@
 #pragma once
 /// \file Equilibrium under displacements that are given on the boundary.
 
-#include <physics/node_numbering.hpp>
+#include <physics/system/node_numbering.hpp>
 
 namespace supple::test {
 

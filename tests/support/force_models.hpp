@@ -1,14 +1,14 @@
 #pragma once
 /// \file The models that the conformance suites run over: factories of models and of full systems.
 
-#include <physics/any_model.hpp>
-#include <physics/composite_model.hpp>
-#include <physics/discrete_shell.hpp>
-#include <physics/full_system.hpp>
-#include <physics/heat_conduction.hpp>
-#include <physics/mass.hpp>
-#include <physics/surface_heat_loss.hpp>
-#include <physics/tet_elasticity.hpp>
+#include <physics/heat/heat_conduction.hpp>
+#include <physics/heat/surface_heat_loss.hpp>
+#include <physics/mesh/mass.hpp>
+#include <physics/model/any_model.hpp>
+#include <physics/model/composite_model.hpp>
+#include <physics/model/discrete_shell.hpp>
+#include <physics/model/tet_elasticity.hpp>
+#include <physics/system/full_system.hpp>
 #include <testing/random_vectors.hpp>
 #include <tests/support/meshes.hpp>
 #include <tests/support/spring_network.hpp>
@@ -22,7 +22,7 @@ struct TetBar {
   static TetMesh mesh() { return perturbed(kuhn_box(2, 1, 1, length), 0.1 * length, 11); }
   static TetElasticity<Material> make() {
     std::vector<Material<double>> materials;
-    for (Index e = 0; e < mesh().num_tets(); ++e) {
+    for (Index e = 0; e < mesh().num_cells(); ++e) {
       const double k = static_cast<double>(e);
       materials.push_back(Material<double>::from({.young = 1e5 * (1 + k), .poisson = 0.2 + 0.02 * k}));
     }
@@ -90,7 +90,7 @@ struct HeatBar {
   static TetMesh mesh() { return TetBar<StVenantKirchhoff>::mesh(); }
   static HeatConduction<Conductivity> make() {
     std::vector<Conductivity<double>> conductivities;
-    for (Index e = 0; e < mesh().num_tets(); ++e) {
+    for (Index e = 0; e < mesh().num_cells(); ++e) {
       const double k = static_cast<double>(e);
       conductivities.push_back(Conductivity<double>::from(10 + k, 0.03 - 0.004 * k));
     }

@@ -1,10 +1,10 @@
 #pragma once
 /// \file A heated bar that the tests of both floors share.
 
-#include <physics/first_order.hpp>
-#include <physics/full_system.hpp>
-#include <physics/heat_conduction.hpp>
-#include <physics/mass.hpp>
+#include <physics/heat/heat_conduction.hpp>
+#include <physics/mesh/mass.hpp>
+#include <physics/system/full_system.hpp>
+#include <physics/time/first_order.hpp>
 #include <tests/support/meshes.hpp>
 
 #include <gtest/gtest.h>

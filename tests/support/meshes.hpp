@@ -2,8 +2,8 @@
 /// \file Small meshes made by rule.
 
 #include <core/random.hpp>
-#include <physics/tet_mesh.hpp>
-#include <physics/triangle_mesh.hpp>
+#include <physics/mesh/tet_mesh.hpp>
+#include <physics/mesh/triangle_mesh.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ inline TetMesh single_tet(double edge = 1) {
   TetMesh mesh;
   mesh.nodes = Points::Zero(4, 3);
   for (int a = 0; a < 3; ++a) mesh.nodes(a + 1, a) = edge;
-  mesh.tets = {{0, 1, 2, 3}};
+  mesh.cells = {{0, 1, 2, 3}};
   return mesh;
 }
 
@@ -46,7 +46,7 @@ inline TetMesh kuhn_box(Index nx, Index ny, Index nz, double edge = 0.1) {
           }
           const bool odd = ((axes[0] > axes[1]) + (axes[0] > axes[2]) + (axes[1] > axes[2])) % 2 == 1;
           if (odd) std::swap(tet[2], tet[3]);
-          mesh.tets.push_back(tet);
+          mesh.cells.push_back(tet);
         } while (std::next_permutation(axes.begin(), axes.end()));
       }
   return mesh;

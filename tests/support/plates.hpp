@@ -1,9 +1,9 @@
 #pragma once
 /// \file Thin plates that the tests of the reduction floor share.
 
-#include <physics/discrete_shell.hpp>
-#include <physics/full_system.hpp>
-#include <physics/mass.hpp>
+#include <physics/mesh/mass.hpp>
+#include <physics/model/discrete_shell.hpp>
+#include <physics/system/full_system.hpp>
 #include <tests/support/meshes.hpp>
 
 namespace supple::test {

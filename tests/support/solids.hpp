@@ -1,8 +1,8 @@
 #pragma once
 /// \file Small irregular meshes of every element type, and solids on them.
 
-#include <physics/mass.hpp>
-#include <physics/solid_elasticity.hpp>
+#include <physics/mesh/mass.hpp>
+#include <physics/model/solid_elasticity.hpp>
 #include <tests/support/meshes.hpp>
 
 #include <numbers>
@@ -18,7 +18,7 @@ CellMesh<Element::num_nodes> box_of(const std::array<Index, 3>& cells, double ed
   else if constexpr (std::same_as<Element, QuadraticTet>)
     return quadratic_mesh(kuhn_box(nx, ny, nz, edge));
   else
-    return cell_mesh(kuhn_box(nx, ny, nz, edge));
+    return kuhn_box(nx, ny, nz, edge);
 }
 
 /// Mid-edge nodes back amid their corners.

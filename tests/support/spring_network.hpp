@@ -2,8 +2,8 @@
 /// \file Two force models as small as they get: no packs, no template over the scalar type.
 
 #include <core/check.hpp>
-#include <physics/force_model.hpp>
-#include <physics/tet_mesh.hpp>
+#include <physics/mesh/tet_mesh.hpp>
+#include <physics/model/force_model.hpp>
 
 #include <array>
 #include <set>
@@ -61,7 +61,7 @@ static_assert(ForceModel<SpringNetwork>);
 /// The edges of a mesh, each once.
 inline std::vector<std::array<Index, 2>> mesh_edges(const TetMesh& mesh) {
   std::set<std::array<Index, 2>> edges;
-  for (const Tet& tet : mesh.tets)
+  for (const Tet& tet : mesh.cells)
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b < a; ++b) edges.insert({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
   return {edges.begin(), edges.end()};

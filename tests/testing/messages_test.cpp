@@ -1,7 +1,7 @@
 // Suites are held to what they promise in turn: a model that is wrong in one way fails the one check that is about it,
 // and the message says in words what is violated.
-#include <physics/full_system.hpp>
-#include <physics/fung.hpp>
+#include <physics/material/fung.hpp>
+#include <physics/system/full_system.hpp>
 #include <testing/force_model_conformance.hpp>
 #include <testing/material_conformance.hpp>
 #include <testing/subset_selector_conformance.hpp>

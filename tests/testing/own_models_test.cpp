@@ -1,6 +1,6 @@
 // What docs/testing.md shows: models of one's own, each put through its suite.
-#include <physics/tet_elasticity.hpp>
-#include <sparse/nn_htp.hpp>
+#include <physics/model/tet_elasticity.hpp>
+#include <sparse/selectors/nn_htp.hpp>
 #include <testing/force_model_conformance.hpp>
 #include <testing/material_conformance.hpp>
 #include <testing/subset_selector_conformance.hpp>

@@ -1,9 +1,10 @@
 // A project outside the tree: vectors and matrices made by the installed library are used and freed here, and
 // the other way round, whatever instruction set this file is compiled for.
-#include <io/builtin_meshes.hpp>
-#include <io/node_sets.hpp>
-#include <physics/full_system.hpp>
-#include <reduction/reduce.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <physics/body/solid_model.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/pipeline/reduce.hpp>
 
 #include <cstdio>
 

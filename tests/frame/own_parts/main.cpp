@@ -1,9 +1,9 @@
 // A material by its energy, an element and a selector that Supple does not have, reduced and simulated.
-#include <physics/mass.hpp>
-#include <physics/newmark.hpp>
-#include <physics/solid_elasticity.hpp>
-#include <reduction/modal_basis.hpp>
-#include <reduction/reduce_system.hpp>
+#include <physics/mesh/mass.hpp>
+#include <physics/model/solid_elasticity.hpp>
+#include <physics/time/newmark.hpp>
+#include <reduction/basis/modal_basis.hpp>
+#include <reduction/pipeline/reduce_system.hpp>
 
 #include <batched_omp.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SubspaceBuilder: operator()(system) must be const
-#include <reduction/explain_subspace_builder.hpp>
+#include <reduction/subspace/explain_subspace_builder.hpp>
 
 using namespace supple;
 

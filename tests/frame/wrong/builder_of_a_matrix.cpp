@@ -1,5 +1,5 @@
 // SubspaceBuilder: operator()(system) must return a Subspace: a DenseBasis or a NodalBasis
-#include <reduction/explain_subspace_builder.hpp>
+#include <reduction/subspace/explain_subspace_builder.hpp>
 
 using namespace supple;
 

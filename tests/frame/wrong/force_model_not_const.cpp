@@ -1,5 +1,5 @@
 // ForceModel: `stiffness(i, u_i)` must be const and return LocalMatrix<local_dofs>
-#include <physics/full_system.hpp>
+#include <physics/system/full_system.hpp>
 
 using namespace supple;
 

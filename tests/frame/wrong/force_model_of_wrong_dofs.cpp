@@ -1,5 +1,5 @@
 // ForceModel: `local_dofs` must be stencil_size * node_dim
-#include <physics/full_system.hpp>
+#include <physics/system/full_system.hpp>
 
 using namespace supple;
 

@@ -1,5 +1,5 @@
 // ForceModel: there is an `energy`, but not `double energy(Index i, const Local<local_dofs>& u_i) const`
-#include <physics/full_system.hpp>
+#include <physics/system/full_system.hpp>
 
 using namespace supple;
 

@@ -1,5 +1,5 @@
 // ForceModel: `stencil(i)` must be const and return std::span<const Index, stencil_size>
-#include <physics/full_system.hpp>
+#include <physics/system/full_system.hpp>
 
 using namespace supple;
 

@@ -1,5 +1,5 @@
 // ForceModel: `Index num_components() const` is missing
-#include <physics/full_system.hpp>
+#include <physics/system/full_system.hpp>
 
 using namespace supple;
 

@@ -1,5 +1,5 @@
 // ForceModel: `static constexpr int node_dim` is missing
-#include <physics/full_system.hpp>
+#include <physics/system/full_system.hpp>
 
 using namespace supple;
 

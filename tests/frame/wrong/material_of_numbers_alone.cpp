@@ -1,5 +1,5 @@
 // Material: `energy` must be written over the scalar type Real
-#include <physics/tet_elasticity.hpp>
+#include <physics/model/tet_elasticity.hpp>
 
 using namespace supple;
 

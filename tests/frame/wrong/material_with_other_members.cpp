@@ -1,5 +1,5 @@
 // Material: its members must be of type Real (or arrays of them) and nothing else
-#include <physics/tet_elasticity.hpp>
+#include <physics/model/tet_elasticity.hpp>
 
 using namespace supple;
 

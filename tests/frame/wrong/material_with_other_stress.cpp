@@ -1,5 +1,5 @@
 // Material: there is a `stress`, but not `Matrix3<Real> stress(const Matrix3<Real>& F) const`
-#include <physics/tet_elasticity.hpp>
+#include <physics/model/tet_elasticity.hpp>
 
 using namespace supple;
 

@@ -1,5 +1,5 @@
 // Material: `Real energy(const Matrix3<Real>& F) const` is missing
-#include <physics/tet_elasticity.hpp>
+#include <physics/model/tet_elasticity.hpp>
 
 using namespace supple;
 

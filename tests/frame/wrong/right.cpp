@@ -1,8 +1,8 @@
 // compiles: what the wrong ones beside it are wrong about, right
-#include <physics/full_system.hpp>
-#include <physics/tet_elasticity.hpp>
-#include <reduction/explain_subspace_builder.hpp>
-#include <sparse/explain_subset_selector.hpp>
+#include <physics/model/tet_elasticity.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/subspace/explain_subspace_builder.hpp>
+#include <sparse/selection/explain_subset_selector.hpp>
 
 using namespace supple;
 

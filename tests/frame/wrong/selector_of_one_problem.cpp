@@ -1,5 +1,5 @@
 // SubsetSelector: `template <FittingProblem P> Selection operator()(const P& problem, const SelectionRequest& request) const` is missing
-#include <sparse/explain_subset_selector.hpp>
+#include <sparse/selection/explain_subset_selector.hpp>
 
 using namespace supple;
 

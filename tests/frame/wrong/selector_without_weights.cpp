@@ -1,5 +1,5 @@
 // SubsetSelector: operator()(problem, request) must return a Selection
-#include <sparse/explain_subset_selector.hpp>
+#include <sparse/selection/explain_subset_selector.hpp>
 
 using namespace supple;
 

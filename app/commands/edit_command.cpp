@@ -1,0 +1,220 @@
+#include <app/commands/edit_command.hpp>
+#include <app/report/exit_guard.hpp>
+#include <app/report/json_report.hpp>
+#include <app/report/terminal.hpp>
+#include <app/scene/edit_scene.hpp>
+#include <app/scene/frames.hpp>
+#include <core/check.hpp>
+#include <core/parallel.hpp>
+#include <core/stopwatch.hpp>
+#include <core/version.hpp>
+#include <io/table/csv.hpp>
+#include <physics/body/force_models.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/editing/editor.hpp>
+#include <reduction/pipeline/reduce.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace supple {
+
+namespace {
+
+struct SolveRecord {
+  StaticReport report;
+  double elastic = 0, control = 0;  ///< energies [J]
+  double seconds = 0;               ///< of the solve
+};
+
+struct EditRun {
+  std::vector<SolveRecord> solves;
+  RowMatrix states;  ///< (1 + solves) × coordinates: those of the model, or displacements of all nodes
+};
+
+/// Solves along the paths. \param displacement  unknowns → displacements of all nodes.
+/// \param lead  called before solve k with the state to start from, which it may improve.
+template <typename System, typename Frame, typename Displacement, typename Lead>
+EditRun run_edits(const System& system, const Points& rest, const std::vector<Handle>& handles,
+                  const std::vector<std::vector<RigidMotion>>& path, const StaticOptions& options, const Frame& frame,
+                  const Displacement& displacement, const Lead& lead, const Progress& progress) {
+  Editor editor(system, rest, options);
+  for (const Handle& handle : handles) (void)editor.add(handle);
+  EditRun run;
+  const Vector start = frame(editor.state());
+  run.states.resize(static_cast<Index>(path.size()) + 1, start.size());
+  run.states.row(0) = start.transpose();
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    for (std::size_t h = 0; h < handles.size(); ++h) editor.move(static_cast<Index>(h), path[k][h]);
+    const Stopwatch watch;
+    editor.start_from(lead(static_cast<Index>(k), editor.state()));
+    SolveRecord record{editor.solve(), 0, 0, 0};
+    record.seconds = watch.seconds();
+    record.elastic = editor.elastic_energy();
+    record.control = editor.control_energy(displacement(editor.state()));
+    run.solves.push_back(record);
+    run.states.row(static_cast<Index>(k) + 1) = frame(editor.state()).transpose();
+    tell(progress, "edits", static_cast<double>(k + 1) / static_cast<double>(path.size()));
+    if (record.report.status == Status::NotFinite)
+      throw SolverError("solve " + std::to_string(k + 1) + " is not finite; more increments may help");
+  }
+  return run;
+}
+
+void write_solves(const std::filesystem::path& path, const EditRun& run) {
+  CsvTable table{{"solve"},    {"elastic", "J"}, {"control", "J"}, {"iterations"},
+                 {"tangents"}, {"residual"},     {"status"},       {"seconds", "s"}};
+  for (std::size_t k = 0; k < run.solves.size(); ++k) {
+    const SolveRecord& solve = run.solves[k];
+    table.add_row(k + 1, solve.elastic, solve.control, solve.report.iterations, solve.report.tangents,
+                  solve.report.residual, to_string(solve.report.status), solve.seconds);
+  }
+  const ExitGuard guard;
+  write_csv(path, table);
+}
+
+const char* to_text(StaticMethod method) {
+  return method == StaticMethod::Newton ? "newton" : method == StaticMethod::Bfgs ? "bfgs" : "nlopt";
+}
+
+StaticOptions decide(const EditCommand& command, const EditScene& scene) {
+  StaticOptions options;
+  options.method = scene.method.value_or(StaticMethod::Newton);
+  if (command.solver)
+    options.method = *command.solver == "newton" ? StaticMethod::Newton
+                     : *command.solver == "bfgs" ? StaticMethod::Bfgs
+                                                 : StaticMethod::Nlopt;
+  if (command.full && options.method == StaticMethod::Nlopt) {
+    if (command.solver) throw InputError("--solver nlopt is for reduced systems");
+    options.method = StaticMethod::Newton;
+  }
+  options.tolerance = command.tolerance.value_or(scene.tolerance.value_or(options.tolerance));
+  if (!(options.tolerance > 0)) throw InputError("the tolerance is not positive, expected > 0");
+  options.max_iterations = scene.max_iterations.value_or(options.max_iterations);
+  return options;
+}
+
+}  // namespace
+
+void EditCommand::run() const {
+  set_num_threads(threads);
+  require_writable(json);
+  StageTimes times;
+  const ReducedModel reduced = load_model(model);
+  const EditScene edits = read_edit_scene(scene, reduced.body);
+  const StaticOptions options = decide(*this, edits);
+  const Points& rest = node_positions(reduced.body);
+  const ReducedModes modes = reduced_modes(reduced);
+  if (modes.num_zero == modes.omega.size()) throw SolverError("the model has no flexible mode");
+  const std::vector<Handle> handles = make_handles(edits, modes.softest_stiffness(), nodal_mass(reduced.body).sum());
+  const auto path = handle_paths(edits, handles, rest);
+  const OutputFolder folder(output);
+  times.finish("read model");
+
+  const Progress progress = progress_bar();
+  const auto as_it_is = [](Index, const Vector& state) { return state; };
+  EditRun result = with_reduced_system(reduced, [&](const auto& system) {
+    StaticOptions reduced_options = options;
+    if (full) reduced_options.method = StaticMethod::Newton;
+    return run_edits(
+        system, rest, handles, path, reduced_options, [](VectorIn q) -> Vector { return q; },
+        [&](VectorIn q) -> Vector { return system.subspace().reconstruct(q); }, as_it_is, full ? Progress() : progress);
+  });
+  if (full)
+    result = with_force_model(reduced.body, [&]<typename Model>(const std::shared_ptr<const Model>& force) {
+      const FullSystem<Model> system(force, nodal_mass(reduced.body), fixed_nodes(reduced.body));
+      // each solve begins where the reduced model says that the handles lead
+      const auto led = [&](Index k, const Vector& state) -> Vector {
+        const Vector way = (result.states.row(k + 1) - result.states.row(k)).transpose();
+        return state + std::visit([&](const auto& basis) { return system.restrict(basis->reconstruct(way)); },
+                                  reduced.subspace);
+      };
+      const auto expand = [&](VectorIn u) -> Vector { return system.expand(u); };
+      return run_edits(system, rest, handles, path, options, expand, expand, led, progress);
+    });
+  times.finish("edits");
+  const Index frames_count = result.states.rows();
+  double reconstruction = 0;
+  if (!output.empty()) {
+    Trajectory trajectory{.reduced = !full,
+                          .model = std::filesystem::absolute(model).lexically_normal(),
+                          .model_checksum = header_checksum(model),
+                          .step = 1,
+                          .steps_per_second = 0,
+                          .time = Vector::LinSpaced(frames_count, 0, static_cast<double>(frames_count - 1)),
+                          .kinetic = Vector::Zero(frames_count),
+                          .elastic = Vector::Zero(frames_count),
+                          .work = Vector::Zero(frames_count),
+                          .u = result.states,
+                          .v = RowMatrix::Zero(frames_count, result.states.cols())};
+    for (Index k = 1; k < frames_count; ++k) trajectory.elastic[k] = result.solves[k - 1].elastic;
+    save_trajectory(output / trajectory_file, trajectory);
+    write_solves(output / "solves.csv", result);
+    reconstruction = write_frames(
+        output, frames, reduced, trajectory,
+        [](double k) { return k == 0 ? std::string("rest") : "solve " + shown(k); }, progress);
+    times.finish("results");
+  }
+  clear_progress();
+
+  std::vector<double> solve_seconds;
+  Index missed = 0, iterations = 0;
+  double worst = 0;
+  for (const SolveRecord& solve : result.solves) {
+    solve_seconds.push_back(solve.seconds);
+    missed += solve.report.status != Status::Converged;
+    iterations += solve.report.iterations;
+    worst = std::max(worst, solve.report.residual);
+  }
+  std::nth_element(solve_seconds.begin(), solve_seconds.begin() + solve_seconds.size() / 2, solve_seconds.end());
+  const double median = solve_seconds[solve_seconds.size() / 2];
+  const SolveRecord& last = result.solves.back();
+  Json report;
+  report["command"] = "edit";
+  report["version"] = SUPPLE_VERSION;
+  report["model"] = model.string();
+  report["scene"] = scene.string();
+  report["description"] = edits.description;
+  report["system"] = full ? "full" : "reduced";
+  report["solver"] = to_text(options.method);
+  report["tolerance"] = options.tolerance;
+  report["handles"] = Json::array();
+  for (std::size_t h = 0; h < handles.size(); ++h)
+    report["handles"].push_back({{"name", edits.handles[h].name},
+                                 {"nodes", edits.handles[h].nodes.size()},
+                                 {"samples", handles[h].samples.size()},
+                                 {"weight", handles[h].weight}});
+  report["solves"] = result.solves.size();
+  report["missed_solves"] = missed;
+  report["mean_iterations"] = static_cast<double>(iterations) / static_cast<double>(result.solves.size());
+  report["worst_residual"] = worst;
+  report["median_solve_seconds"] = median;
+  report["reconstruction_seconds"] = reconstruction;
+  report["elastic_energy"] = last.elastic;
+  report["control_energy"] = last.control;
+  report["threads"] = num_threads();
+  report["seconds"] = json_seconds(times.seconds(), times.total());
+  report["peak_memory"] = peak_resident_memory();
+  if (!output.empty()) write_json(output / "report.json", report);
+  if (!is_stdout(json)) {
+    Rows rows{{"scene", edits.description},
+              {"system", full ? "full" : "reduced, dimension " + std::to_string(reduced.dim())},
+              {"solves", std::to_string(result.solves.size()) + " by " + to_text(options.method) + ", " +
+                             shown(report["mean_iterations"].get<double>(), 3) + " iterations each, median " +
+                             shown(1e3 * median, 3) + " ms"},
+              {"residual", "at most " + shown(worst, 2) + ", asked for " + shown(options.tolerance)},
+              {"energy", shown(last.elastic) + " J elastic, " + shown(last.control) + " J of the handles"}};
+    if (reconstruction > 0)
+      rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(frames_count), 3) +
+                                              " ms a frame of all nodes");
+    if (!output.empty()) rows.emplace_back("results", output.string());
+    print_rows(stdout, "edit of " + model.string(), rows);
+    print_stages(stdout, times.seconds(), times.total());
+  }
+  write_json(json, report);
+  if (missed > 0)
+    warn(std::to_string(missed) + " of " + std::to_string(result.solves.size()) + " solves missed the tolerance " +
+         shown(options.tolerance) + " (worst residual " + shown(worst, 2) + "); try more increments");
+}
+
+}  // namespace supple

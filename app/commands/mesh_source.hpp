@@ -1,0 +1,27 @@
+#pragma once
+/// \file Meshes as the command line names them.
+
+#include <io/mesh/mesh_notes.hpp>
+#include <physics/mesh/cell_mesh.hpp>
+#include <physics/mesh/triangle_mesh.hpp>
+
+#include <string>
+#include <variant>
+
+namespace supple {
+
+struct NamedMesh {
+  std::variant<TetMesh, HexMesh, QuadraticTetMesh, TriangleMesh> mesh;
+  MeshNotes notes;  ///< of a file; for a built-in only the format
+
+  const Points& nodes() const {
+    return std::visit([](const auto& m) -> const Points& { return m.nodes; }, mesh);
+  }
+};
+
+/// A built-in such as "bar:80x20x10" or "sphere:16", or else a file: a surface by its extension (.obj, .off, .ply,
+/// .stl), anything else a solid.
+/// Tells the terminal of the notes' warnings.
+NamedMesh load_mesh(const std::string& spec);
+
+}  // namespace supple

@@ -1,0 +1,269 @@
+#include <app/commands/problem_options.hpp>
+#include <app/report/json_report.hpp>
+#include <app/scene/pose_file.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <io/text/json_fields.hpp>
+#include <physics/body/force_models.hpp>
+#include <physics/body/material_law.hpp>
+#include <reduction/basis/named_subspace.hpp>
+
+#include <algorithm>
+#include <concepts>
+#include <optional>
+#include <set>
+
+namespace supple {
+
+namespace {
+
+std::vector<Index> held_nodes(const ProblemOptions& problem, const NamedMesh& named) {
+  const Points& nodes = named.nodes();
+  std::set<Index> held;
+  const auto fix = [&](const std::vector<Index>& some) { held.insert(some.begin(), some.end()); };
+  fix(select_nodes(nodes, problem.fix));
+  for (const std::string& box : problem.fix_box) fix(nodes_in_box(nodes, box));
+  for (const std::string& region : problem.fix_region) {
+    std::visit(
+        [&]<typename Mesh>(const Mesh& mesh) {
+          if constexpr (std::same_as<Mesh, TriangleMesh>)
+            throw InputError("--fix-region '" + region + "': a surface has no regions");
+          else
+            fix(nodes_of_region(mesh, region));
+        },
+        named.mesh);
+  }
+  for (const std::filesystem::path& file : problem.fix_file) fix(read_node_set(nodes, file));
+  return {held.begin(), held.end()};
+}
+
+RayleighDamping read_damping(const ProblemOptions& problem) {
+  const RayleighDamping damping{option_quantity("--damping-alpha", problem.damping_alpha, "1/s"),
+                                option_quantity("--damping-beta", problem.damping_beta, "s")};
+  if (damping.alpha < 0 || damping.beta < 0) throw InputError("damping is negative, expected 0 or more");
+  return damping;
+}
+
+struct Material {
+  IsotropicModuli moduli;
+  double density = 0;
+  MaterialLaw::Named parameters = {};  // instead of what the moduli give
+};
+
+/// "mu=2e4"
+std::pair<std::string, double> named_value(const std::string& text) {
+  const std::size_t at = text.find('=');
+  if (at == std::string::npos || at == 0)
+    throw InputError("--parameter '" + text + "' is not of the form NAME=VALUE, such as mu=2e4");
+  return {text.substr(0, at), option_quantity("--parameter " + text.substr(0, at), text.substr(at + 1), "1")};
+}
+
+Material base_material(const ProblemOptions& problem) {
+  Material result{{option_quantity("--young", problem.young, "Pa"), option_quantity("--poisson", problem.poisson, "1")},
+                  option_quantity("--density", problem.density, "kg/m^3")};
+  for (const std::string& text : problem.parameters) {
+    const auto [name, value] = named_value(text);
+    if (!result.parameters.emplace(name, value).second) throw InputError("--parameter " + name + " is given twice");
+  }
+  return result;
+}
+
+/// What the fields of a file change of a material.
+Material read_material(const JsonFields& fields, const MaterialLaw& law, Material material) {
+  material.moduli.young = fields.number_or("young", material.moduli.young, positive, "Pa");
+  material.moduli.poisson = fields.number_or("poisson", material.moduli.poisson, between(-1, 0.5));
+  material.density = fields.number_or("density", material.density, positive, "kg/m^3");
+  if (const auto parameters = fields.object_if("parameters"))
+    for (const std::string& name : law.parameters)
+      if (parameters->contains(name)) material.parameters[name] = parameters->number(name);
+  return material;
+}
+
+/// A law that an option or a file names. \throws InputError that says where.
+const MaterialLaw& named_law(const std::string& name, const std::string& where) {
+  try {
+    return material_law(name);
+  } catch (const std::invalid_argument& error) {
+    throw InputError(where + ": " + error.what());
+  }
+}
+
+/// A law and one material for the object, and others for the regions that the file of --materials names.
+template <typename Mesh>
+void set_materials(const ProblemOptions& problem, SolidOf<Mesh>& solid) {
+  std::vector<Material> materials{base_material(problem)};
+  const Mesh& mesh = solid.mesh;
+  std::optional<JsonFields> file;
+  if (problem.materials) file = JsonFields::read(*problem.materials);
+  const bool law_in_file = file && file->contains("law");
+  solid.law = law_in_file ? file->text("law") : problem.law;
+  const MaterialLaw& law = named_law(solid.law, law_in_file ? problem.materials->string() : "--material");
+  if (file) {
+    const Material base = materials[0] = read_material(*file, law, materials[0]);
+    if (const auto regions = file->object_if("regions")) {
+      if (mesh.region.empty())
+        throw InputError(problem.materials->string() + ": the mesh has no regions, so there is nothing to tell apart");
+      std::map<int, std::int32_t> material_of_region;
+      for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end())) {
+        material_of_region[tag] = 0;
+        const auto name = mesh.region_names.find(tag);
+        for (const std::string& key : {name == mesh.region_names.end() ? "" : name->second, std::to_string(tag)})
+          if (!key.empty() && regions->contains(key)) {
+            material_of_region[tag] = static_cast<std::int32_t>(materials.size());
+            materials.push_back(read_material(regions->object(key), law, base));
+            break;
+          }
+      }
+      for (const int tag : mesh.region) solid.material_of_cell.push_back(material_of_region[tag]);
+    }
+    file->finish();
+  }
+  solid.density = Vector::Constant(1, materials[0].density);
+  if (!solid.material_of_cell.empty()) {
+    solid.density.resize(mesh.num_cells());
+    for (Index e = 0; e < mesh.num_cells(); ++e) solid.density[e] = materials[solid.material_of_cell[e]].density;
+  }
+  for (std::size_t k = 0; k < materials.size(); ++k) {
+    const std::vector<double> row = law.values(materials[k].moduli, materials[k].parameters);
+    solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
+    for (std::size_t j = 0; j < row.size(); ++j) solid.parameters(k, j) = row[j];
+  }
+}
+
+double shell_thickness(const ProblemOptions& problem, const TriangleMesh& mesh) {
+  const std::string text = problem.thickness.value_or("1%");
+  if (!text.ends_with('%')) return option_quantity("--thickness", text, "m");
+  return option_quantity("--thickness", text, "1") * bounding_box(mesh.nodes).diagonal();
+}
+
+InvertedPoses inverted_poses(const std::string& word) {
+  return word == "keep" ? InvertedPoses::Keep : word == "shrink" ? InvertedPoses::Shrink : InvertedPoses::Redraw;
+}
+
+const char* to_text(ForceNorm norm) {
+  return norm == ForceNorm::Mass ? "mass" : "stiffness";
+}
+const char* to_text(InvertedPoses rule) {
+  return rule == InvertedPoses::Keep ? "keep" : rule == InvertedPoses::Shrink ? "shrink" : "redraw";
+}
+
+}  // namespace
+
+Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
+  const std::vector<Index> held = held_nodes(problem, named);
+  const RayleighDamping damping = read_damping(problem);
+  const bool gauss_points = problem.components == "gauss-points";
+  const auto solid_body = [&]<typename Mesh>(const Mesh& mesh) -> Body {
+    SolidOf<Mesh> solid{.mesh = mesh, .fixed_nodes = held, .damping = damping};
+    if (problem.thickness)
+      throw InputError("--thickness is for surfaces; the mesh has " + std::string(cell_name(Body(SolidOf<Mesh>{}))));
+    if (gauss_points) {
+      if constexpr (std::same_as<Mesh, TetMesh>)
+        throw InputError(
+            "--components gauss-points is for hexahedra and quadratic tets; a linear tet has one Gauss point");
+      solid.component = SolidComponent::GaussPoint;
+    }
+    set_materials(problem, solid);
+    return solid;
+  };
+  const auto shell_body = [&](const TriangleMesh& surface) -> Body {
+    if (gauss_points)
+      throw InputError("--components gauss-points is for solids; the components of a surface are flaps");
+    if (problem.law != "stvk")
+      throw InputError("--material " + problem.law + " is for solids; a surface is a discrete shell");
+    if (problem.materials)
+      throw InputError(problem.materials->string() + ": a surface has no regions, so there is nothing to tell apart");
+    if (!problem.parameters.empty())
+      throw InputError("--parameter is for the laws of solids; a surface is a discrete shell");
+    const std::vector<Index> neighbour = neighbour_sides(surface);
+    for (Index t = 0; t < surface.num_triangles(); ++t)
+      if (std::max({neighbour[3 * t], neighbour[3 * t + 1], neighbour[3 * t + 2]}) < 0)
+        throw InputError(problem.mesh + ": triangle " + std::to_string(t) +
+                         " shares no edge with another one: a shell cannot bend or stretch there");
+    const Material base = base_material(problem);
+    Shell shell = isotropic_shell(surface, base.moduli, shell_thickness(problem, surface), held, base.density);
+    shell.damping = damping;
+    return shell;
+  };
+  return std::visit(
+      [&]<typename Mesh>(const Mesh& mesh) -> Body {
+        if constexpr (std::same_as<Mesh, TriangleMesh>)
+          return shell_body(mesh);
+        else
+          return solid_body(mesh);
+      },
+      named.mesh);
+}
+
+ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named, const Body& body) {
+  ReduceOptions options = problem.recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
+  options.subspace = problem.subspace;
+  if (problem.dimension) options.dimension = *problem.dimension;
+  if (problem.snapshots) options.snapshots = read_poses(*problem.snapshots, named.nodes());
+  const std::vector<std::string> parts = parts_of_subspace(options.subspace);
+  const bool pca = std::ranges::find(parts, "pca") != parts.end();
+  if (pca && !problem.snapshots) throw InputError("--subspace pca needs --snapshots");
+  if (!pca && problem.snapshots) throw InputError("--snapshots are for --subspace pca");
+  options.seed = problem.seed;
+  if (problem.modes) options.modes = *problem.modes;
+  if (problem.poses) options.poses.count = *problem.poses;
+  if (problem.held_out) options.held_out_poses = *problem.held_out;
+  if (problem.equilibria) options.equilibria = *problem.equilibria;
+  if (problem.omega_exponent) options.poses.omega_exponent = *problem.omega_exponent;
+  if (!problem.amplitudes.empty()) options.poses.amplitudes = problem.amplitudes;
+  if (problem.norm) options.norm = *problem.norm == "mass" ? ForceNorm::Mass : ForceNorm::Stiffness;
+  options.poses.inverted =
+      inverted_rule(law(body), problem.inverted ? std::optional(inverted_poses(*problem.inverted)) : std::nullopt);
+  if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, named.nodes());
+  return options;
+}
+
+Index num_components_to_weight(const Body& body, const ReduceOptions& options) {
+  constexpr Index most = 5000;
+  Index count = with_force_model(body, [](const auto& model) { return model->num_components(); });
+  if (!options.candidates.empty()) {
+    std::vector<Index> eligible;
+    std::ranges::set_union(options.candidates, options.must_keep, std::back_inserter(eligible));
+    count = static_cast<Index>(eligible.size());
+  }
+  if (count > most)
+    throw InputError("the selector all weights every one of " + std::to_string(count) + " " +
+                     std::string(component_name(body)) + ", which is for at most " + std::to_string(most));
+  return count;
+}
+
+Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, const Body& body) {
+  Json json{{"recipe", problem.recipe},
+            {"subspace", options.subspace},
+            {"modes", options.modes},
+            {"dimension", options.dimension},
+            {"poses", options.poses.count},
+            {"norm", to_text(options.norm)},
+            {"omega_exponent", options.poses.omega_exponent},
+            {"amplitudes", options.poses.amplitudes},
+            {"inverted", to_text(*options.poses.inverted)},
+            {"held_out", options.held_out_poses},
+            {"equilibria", num_equilibria(body, options)},
+            {"seed", options.seed},
+            {"material", law(body)},
+            {"components", problem.components},
+            {"young", problem.young},
+            {"poisson", problem.poisson},
+            {"density", problem.density},
+            {"damping_alpha", problem.damping_alpha},
+            {"damping_beta", problem.damping_beta},
+            {"fix", problem.fix},
+            {"fix_box", problem.fix_box},
+            {"fix_region", problem.fix_region}};
+  const auto add_files = [&](const char* key, const std::vector<std::filesystem::path>& files) {
+    for (const std::filesystem::path& file : files) json[key].push_back(file.string());
+  };
+  add_files("fix_file", problem.fix_file);
+  if (!problem.parameters.empty()) json["parameters"] = problem.parameters;
+  if (problem.thickness) json["thickness"] = *problem.thickness;
+  if (problem.materials) json["materials"] = problem.materials->string();
+  if (problem.snapshots) json["snapshots"] = problem.snapshots->string();
+  if (problem.poses_file) json["poses_file"] = problem.poses_file->string();
+  return json;
+}
+
+}  // namespace supple

@@ -1,0 +1,261 @@
+#include <app/commands/mesh_source.hpp>
+#include <app/commands/reduce_command.hpp>
+#include <app/report/exit_guard.hpp>
+#include <app/report/json_report.hpp>
+#include <app/report/terminal.hpp>
+#include <app/scene/surface.hpp>
+#include <core/parallel.hpp>
+#include <core/stopwatch.hpp>
+#include <core/version.hpp>
+#include <io/picture/plot.hpp>
+#include <io/text/index_file.hpp>
+#include <physics/body/force_models.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace supple {
+
+namespace {
+
+constexpr Index largest_search = 1000;  // points, if only a target error is given
+
+/// What an earlier model of the same object has selected.
+Selection selection_of(const std::filesystem::path& path, const Body& body, Index num_components) {
+  const ReducedModel model = load_model(path);
+  const Index m = with_force_model(model.body, [](const auto& force) { return force->num_components(); });
+  if (m != num_components || component_name(model.body) != component_name(body))
+    throw InputError(path.string() + ": has " + std::to_string(m) + " " + std::string(component_name(model.body)) +
+                     ", expected " + std::to_string(num_components) + " " + std::string(component_name(body)) +
+                     " as the mesh");
+  if (!has_nodes(model.body, node_positions(body)))
+    throw InputError(path.string() + ": is a model of another mesh, expected one with the same nodes");
+  return {.indices = model.indices, .weights = model.weights, .report = {}};
+}
+
+ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const Body& body) {
+  ReduceOptions options = reduce_options(command, named, body);
+  if (command.target_error) {
+    options.target_error = *command.target_error;
+    options.points = largest_search;
+  }
+  if (command.points) options.points = *command.points;
+  if (command.selector) options.selector = *command.selector;
+  const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
+  if (!command.candidates.empty()) options.candidates = read_indices(command.candidates, "component", m);
+  if (!command.must_keep.empty()) options.must_keep = read_indices(command.must_keep, "component", m);
+  if (!command.warm_start.empty()) options.warm_start = selection_of(command.warm_start, body, m);
+  if (options.selector == "all") {
+    const Index all = num_components_to_weight(body, options);
+    if (command.target_error)
+      throw InputError("--target-error is for selectors that take few components, not for --selector all");
+    if (command.points && *command.points < all)
+      throw InputError("--selector all takes all " + std::to_string(all) + " candidates, more than --points " +
+                       std::to_string(*command.points));
+    options.points = all;
+  }
+  if (static_cast<Index>(options.must_keep.size()) > options.points)
+    throw InputError(command.must_keep.string() + ": names " + std::to_string(options.must_keep.size()) +
+                     " components, expected at most --points " + std::to_string(options.points));
+  return options;
+}
+
+/// What made the model, and nothing that differs between two runs of the same job.
+Json options_json(const ReduceCommand& command, const ReduceOptions& options, const Body& body) {
+  Json json = problem_json(command, options, body);
+  json["points"] = options.points;
+  json["target_error"] = options.target_error;
+  json["selector"] = options.selector;
+  const auto file = [&](const char* key, const std::filesystem::path& path) {
+    if (!path.empty()) json[key] = path.string();
+  };
+  file("candidates", command.candidates);
+  file("must_keep", command.must_keep);
+  file("warm_start", command.warm_start);
+  return json;
+}
+
+Json report_json(const ReduceCommand& command, const ReduceOptions& options, const NamedMesh& named,
+                 const ReducedModel& model, const ReduceReport& report) {
+  Json json;
+  json["command"] = "reduce";
+  json["version"] = SUPPLE_VERSION;
+  json["mesh"] = {{"source", command.mesh},
+                  {"format", named.notes.format},
+                  {"nodes", report.nodes},
+                  {json_key(component_name(model.body)), report.components},
+                  {"fixed_nodes", report.fixed_nodes},
+                  {"mass", nodal_mass(model.body).sum()},
+                  {"diagonal", bounding_box(node_positions(model.body)).diagonal()},
+                  {"warnings", named.notes.warnings}};
+  json["mesh"][json_key(cell_name(model.body))] = num_cells(model.body);
+  json["dimension"] = report.dimension;
+  json["points"] = report.points;
+  json["training_error"] = report.training_error;
+  json["held_out_error"] = report.held_out_error;
+  json["equilibrium_error"] = report.equilibrium_error;
+  json["held_out"] = Json::array();
+  const double largest = options.poses.largest_amplitude();
+  for (const auto& [share, error] : report.held_out)
+    json["held_out"].push_back({{"share", share}, {"amplitude", share * largest}, {"error", error}});
+  json["poses"] = {{"count", report.poses},
+                   {"inverted", report.inverted_poses},
+                   {"redrawn", report.redrawn_poses},
+                   {"shrunk", report.shrunk_poses}};
+  json["modes"] = {{"omega", json_numbers(report.omega)}, {"rigid", report.rigid_modes}, {"dropped", report.dropped}};
+  json["eigenvalues"] = {{"fitted", json_numbers(report.fitted_eigenvalues)},
+                         {"exact", json_numbers(report.exact_eigenvalues)}};
+  const SelectionReport& selection = report.selection;
+  json["selection"] = {{"selector", options.selector},
+                       {"status", to_string(selection.status)},
+                       {"stop_reason", selection.stop_reason},
+                       {"iterations", selection.iterations},
+                       {"residual", selection.residual},
+                       {"kkt_residual", selection.kkt_residual},
+                       {"columns_evaluated", selection.columns_evaluated},
+                       {"history", json_history(selection)}};
+  json["notes"] = report.notes;
+  json["options"] = options_json(command, options, model.body);
+  json["seed"] = options.seed;
+  json["threads"] = num_threads();
+  json["model"] = command.model.string();
+  return json;
+}
+
+/// The object with its selected components as balls.
+void draw_selection(const std::filesystem::path& path, const ReducedModel& model, const ReduceReport& report) {
+  const Points& nodes = node_positions(model.body);
+  Points centres(static_cast<Index>(model.indices.size()), 3);
+  with_force_model(model.body, [&](const auto& force) {
+    for (std::size_t k = 0; k < model.indices.size(); ++k) {
+      const auto stencil = force->stencil(model.indices[k]);
+      Point sum = Point::Zero();
+      for (const Index v : stencil) sum += nodes.row(v).transpose();
+      centres.row(k) = sum.transpose() / static_cast<double>(stencil.size());
+    }
+  });
+  const Surface surface(model.body);
+  PictureObject object{.positions = surface.rows(nodes), .triangles = surface.triangles};
+  object.markers = centres;
+  object.caption = std::to_string(report.points) + " of " + shown_count(report.components) + " " +
+                   std::string(component_name(model.body)) + ", training error " +
+                   shown_percent(report.training_error, 2);
+  write_picture(path, {object});
+}
+
+void draw_error_history(const std::filesystem::path& path, const std::string& kind, const ReduceReport& report) {
+  const std::vector<SelectionStep>& history = report.selection.history;
+  const Index count = static_cast<Index>(history.size());
+  if (count == 0) return;
+  PlotSeries training{"training poses", Vector(count), Vector(count), PlotStyle::LinePoints};
+  for (Index k = 0; k < count; ++k) {
+    training.x[k] = static_cast<double>(k + 1);
+    training.y[k] = 100 * history[k].training_error;
+  }
+  Plot plot{.title = "Force error while choosing " + std::to_string(report.points) + " of " +
+                     shown_count(report.components) + " " + kind,
+            .x = {.label = "iteration"},
+            .y = {.label = "relative force error [%]", .scale = Scale::Log},
+            .series = {training}};
+  PlotSeries held_out = training;
+  held_out.name = "held-out poses, largest amplitude";
+  for (Index k = 0; k < count; ++k) held_out.y[k] = 100 * history[k].held_out_error;
+  if (!held_out.y.array().isNaN().all()) plot.series.push_back(held_out);
+  const ExitGuard guard;
+  draw_plot(path, plot);
+}
+
+void draw_spectrum(const std::filesystem::path& path, const std::string& kind, const ReduceReport& report) {
+  const auto hertz = [](const Vector& eigenvalues) -> Vector {
+    return eigenvalues.cwiseMax(0).cwiseSqrt() / (2 * std::numbers::pi);
+  };
+  const Vector number =
+      Vector::LinSpaced(report.exact_eigenvalues.size(), 1, static_cast<double>(report.exact_eigenvalues.size()));
+  const ExitGuard guard;
+  draw_plot(path, {.title = "Softest frequencies of the reduced model at rest",
+                   .x = {.label = "flexible mode", .low = 0.5, .high = number.size() + 0.5},
+                   .y = {.label = "frequency [Hz]", .low = 0.0},
+                   .series = {{"all " + kind, number, hertz(report.exact_eigenvalues), PlotStyle::LinePoints},
+                              {std::to_string(report.points) + " selected " + kind, number,
+                               hertz(report.fitted_eigenvalues), PlotStyle::Markers}}});
+}
+
+void print_summary(const ReduceCommand& command, const ReducedModel& model, const ReduceReport& report) {
+  const std::string kind(component_name(model.body));
+  Rows rows{{"object", shown_count(report.nodes) + " nodes, " + shown_count(report.components) + " " + kind + ", " +
+                           (report.fixed_nodes > 0 ? shown_count(report.fixed_nodes) + " nodes fixed" : "free")},
+            {"subspace", "dimension " + std::to_string(report.dimension) + " from " +
+                             std::to_string(report.omega.size()) + " modes" +
+                             (report.rigid_modes > 0 ? " (" + std::to_string(report.rigid_modes) + " rigid)" : "")},
+            {"points", std::to_string(report.points) + " " + kind},
+            {"training error", shown_percent(report.training_error)}};
+  std::string held_out;
+  for (const auto& [share, error] : report.held_out)
+    held_out += (held_out.empty() ? "" : ", ") + shown_percent(error) +
+                (share < 1 ? " at " + shown(share) + " of the amplitude" : "");
+  if (std::isfinite(report.equilibrium_error))
+    rows.emplace_back("equilibria", "displaced by " + shown_percent(report.equilibrium_error));
+  rows.emplace_back("held-out error", held_out.empty() ? "not measured" : held_out);
+  if (report.exact_eigenvalues.size() > 0)
+    rows.emplace_back("softest eigenvalue",
+                      shown_percent(report.fitted_eigenvalues[0] / report.exact_eigenvalues[0] - 1, 2) + " off");
+  rows.emplace_back("selection", shown_iterations(report.selection.iterations) + ", " + report.selection.stop_reason);
+  rows.emplace_back("peak memory", shown_bytes(report.peak_memory));
+  rows.emplace_back("model", command.model.string());
+  print_rows(stdout, "reduced model of " + model.provenance.at("mesh"), rows);
+  print_stages(stdout, report.seconds, report.total_seconds);
+}
+
+}  // namespace
+
+void ReduceCommand::run() const {
+  set_num_threads(threads);
+  for (const std::filesystem::path& file : {model, json, picture}) require_writable(file);
+  const Stopwatch total;
+  Stopwatch watch;
+  const NamedMesh named = load_mesh(mesh);
+  const Body body = load_body(*this, named);
+  const ReduceOptions options = method(*this, named, body);
+  const OutputFolder folder(plots);
+  const double read_seconds = watch.seconds();
+
+  ReduceReport report;
+  ReducedModel result = reduce(body, options, &report, progress_bar());
+  clear_progress();
+  result.provenance = {{"version", SUPPLE_VERSION},
+                       {"mesh", mesh},
+                       {"seed", std::to_string(options.seed)},
+                       {"options", options_json(*this, options, body).dump()},
+                       {"training_error", exact(report.training_error)},
+                       {"held_out_error", exact(report.held_out_error)}};
+  for (const std::string& note : report.notes) warn(note);
+  if (options.target_error > 0 && report.training_error > options.target_error)
+    warn("the training error is " + shown_percent(report.training_error) + ", not " +
+         shown_percent(options.target_error) + ": allow more --points than " + std::to_string(options.points));
+
+  watch.restart();
+  {
+    const ExitGuard guard(model);
+    save_model(model, result);
+  }
+  report.seconds.insert(report.seconds.begin(), {"read mesh", read_seconds});
+  report.seconds.emplace_back("write model", watch.seconds());
+  watch.restart();
+  if (!picture.empty()) draw_selection(picture, result, report);
+  if (!plots.empty()) {
+    const std::string kind(component_name(body));
+    draw_error_history(plots / "error.png", kind, report);
+    draw_spectrum(plots / "spectrum.png", kind, report);
+  }
+  if (!picture.empty() || !plots.empty()) report.seconds.emplace_back("pictures", watch.seconds());
+  report.total_seconds = total.seconds();
+  report.peak_memory = peak_resident_memory();
+
+  Json json_report = report_json(*this, options, named, result, report);
+  json_report["seconds"] = json_seconds(report.seconds, report.total_seconds);
+  json_report["peak_memory"] = report.peak_memory;
+  if (!is_stdout(json)) print_summary(*this, result, report);
+  write_json(json, json_report);
+}
+
+}  // namespace supple

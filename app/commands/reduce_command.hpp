@@ -1,0 +1,22 @@
+#pragma once
+
+#include <app/commands/problem_options.hpp>
+
+namespace supple {
+
+/// `supple reduce`.
+struct ReduceCommand : ProblemOptions {
+  std::filesystem::path model;
+
+  std::optional<Index> points;
+  std::optional<double> target_error;
+  std::optional<std::string> selector;
+  std::filesystem::path candidates, must_keep, warm_start;  ///< lists of components, a model; empty: none
+
+  int threads = 0;
+  std::filesystem::path json, picture, plots;  ///< empty: none
+
+  void run() const;
+};
+
+}  // namespace supple

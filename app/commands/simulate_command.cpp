@@ -1,0 +1,272 @@
+#include <app/commands/simulate_command.hpp>
+#include <app/report/exit_guard.hpp>
+#include <app/report/json_report.hpp>
+#include <app/report/terminal.hpp>
+#include <app/scene/frames.hpp>
+#include <app/scene/simulation.hpp>
+#include <app/scene/surface.hpp>
+#include <app/scene/trajectory.hpp>
+#include <core/parallel.hpp>
+#include <core/stopwatch.hpp>
+#include <core/version.hpp>
+#include <io/frames/vtu_writer.hpp>
+#include <io/picture/plot.hpp>
+#include <io/table/csv.hpp>
+#include <reduction/pipeline/reduce.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace supple {
+
+namespace {
+
+/// Single for dense bases, whose rows are too many for the caches near a core.
+RowPrecision default_precision(const ReducedModel& model) {
+  return std::holds_alternative<std::shared_ptr<const DenseBasis>>(model.subspace) ? RowPrecision::Single
+                                                                                   : RowPrecision::Double;
+}
+
+/// The scene with the command line's word on top, and all that was left open decided.
+SimulationOptions decide(const SimulateCommand& command, const ReducedModel& model, Scene& scene) {
+  if (command.time) scene.duration = option_quantity("--time", *command.time, "s");
+  if (command.step) scene.step = option_quantity("--step", *command.step, "s");
+  if (command.solver) scene.solver = solver_named(*command.solver);
+  if (command.tolerance) scene.tolerance = *command.tolerance;
+  if (command.every) scene.every = *command.every;
+  if (!command.track.empty()) scene.track = command.track;
+  for (const Index node : scene.track)
+    if (node < 0 || node >= num_nodes(model.body))
+      throw InputError("--track: there is no node " + std::to_string(node) + ", expected 0 to " +
+                       std::to_string(num_nodes(model.body) - 1));
+  if (!scene.duration || !scene.step || scene.track.empty()) {
+    const Scene pluck = pluck_scene(model);
+    if (!scene.duration) scene.duration = pluck.duration;
+    if (!scene.step) scene.step = pluck.step;
+    if (scene.track.empty()) scene.track = pluck.track;
+  }
+  if (!(*scene.duration > 0)) throw InputError("the duration is " + shown(*scene.duration) + " s, expected > 0");
+  if (!(*scene.step > 0)) throw InputError("the step is " + shown(*scene.step) + " s, expected > 0");
+  const double steps = std::max(1.0, std::ceil(*scene.duration / *scene.step - 1e-6));
+  if (steps > 1e8) throw InputError(shown(steps) + " steps are more than the 1e8 that a run may have");
+
+  SimulationOptions options{.step = *scene.step, .num_steps = static_cast<Index>(steps), .every = 1, .newmark = {}};
+  options.every = scene.every.value_or((options.num_steps + 99) / 100);
+  if (options.every < 1) throw InputError("--every is " + std::to_string(options.every) + ", expected at least 1");
+  options.newmark.damping = scene.damping.value_or(damping(model.body));
+  options.newmark.solver = scene.solver.value_or(command.full ? NonlinearSolver::Newton : NonlinearSolver::Bfgs);
+  if (command.full && options.newmark.solver != NonlinearSolver::Newton) {
+    if (command.solver)
+      throw InputError("--solver " + *command.solver + " is for reduced systems; --full runs with newton");
+    options.newmark.solver = NonlinearSolver::Newton;
+  }
+  if (scene.tolerance) options.newmark.tolerance = *scene.tolerance;
+  if (scene.max_iterations) options.newmark.max_iterations = *scene.max_iterations;
+  if (scene.beta) options.newmark.beta = *scene.beta;
+  if (scene.gamma) options.newmark.gamma = *scene.gamma;
+  if (command.full && command.precision) throw InputError("--precision is for reduced systems, not for --full");
+  if (!command.full) {
+    options.precision = default_precision(model);
+    if (command.precision)
+      options.precision = *command.precision == "single" ? RowPrecision::Single : RowPrecision::Double;
+  }
+  return options;
+}
+
+/// What the steps took, all together.
+struct Effort {
+  double mean_iterations = 0, worst_residual = 0, steps_per_second = 0;
+  Index most_iterations = 0, refreshes = 0, missed = 0;
+
+  explicit Effort(const Simulation& run) {
+    for (Index k = 1; k <= run.num_steps(); ++k) {
+      const StepRecord& step = run.steps[k];
+      mean_iterations += static_cast<double>(step.iterations) / static_cast<double>(run.num_steps());
+      most_iterations = std::max(most_iterations, step.iterations);
+      refreshes += step.refreshes;
+      if (std::isfinite(step.residual)) worst_residual = std::max(worst_residual, step.residual);
+      missed += step.status != Status::Converged;
+    }
+    if (run.integration_seconds > 0) steps_per_second = static_cast<double>(run.num_steps()) / run.integration_seconds;
+  }
+};
+
+Trajectory trajectory_of(const SimulateCommand& command, const Simulation& run, const SimulationOptions& options) {
+  Trajectory trajectory{.reduced = !command.full,
+                        .model = std::filesystem::absolute(command.model).lexically_normal(),
+                        .model_checksum = header_checksum(command.model),
+                        .step = options.step,
+                        .steps_per_second = Effort(run).steps_per_second,
+                        .time = Eigen::Map<const Vector>(run.times.data(), static_cast<Index>(run.times.size())),
+                        .kinetic = {},
+                        .elastic = {},
+                        .work = {},
+                        .u = run.u,
+                        .v = run.v};
+  for (Vector* values : {&trajectory.kinetic, &trajectory.elastic, &trajectory.work})
+    values->resize(trajectory.num_frames());
+  for (Index f = 0; f < trajectory.num_frames(); ++f) {
+    const StepRecord& step = run.steps[f * options.every];
+    trajectory.kinetic[f] = step.kinetic;
+    trajectory.elastic[f] = step.elastic;
+    trajectory.work[f] = step.work;
+  }
+  return trajectory;
+}
+
+void write_energies(const std::filesystem::path& path, const Simulation& run) {
+  CsvTable table{{"time", "s"},  {"kinetic", "J"}, {"elastic", "J"}, {"work", "J"},
+                 {"iterations"}, {"refreshes"},    {"residual"},     {"status"}};
+  for (const StepRecord& step : run.steps)
+    table.add_row(step.time, step.kinetic, step.elastic, step.work, step.iterations, step.refreshes, step.residual,
+                  to_string(step.status));
+  const ExitGuard guard;
+  write_csv(path, table);
+}
+
+void write_tracked(const std::filesystem::path& path, const Scene& scene, const Simulation& run) {
+  std::vector<CsvTable::Column> columns{{"time", "s"}};
+  for (const Index node : scene.track)
+    for (const char* axis : {"x", "y", "z"}) columns.push_back({"u" + std::string(axis) + std::to_string(node), "m"});
+  CsvTable table(columns);
+  for (std::size_t k = 0; k < run.steps.size(); ++k) {
+    std::vector<std::string> row{exact(run.steps[k].time)};
+    for (Index j = 0; j < run.tracked.cols(); ++j) row.push_back(exact(run.tracked(k, j)));
+    table.add_cells(std::move(row));
+  }
+  const ExitGuard guard;
+  write_csv(path, table);
+}
+
+void draw_energies(const std::filesystem::path& path, const Simulation& run) {
+  const Index count = static_cast<Index>(run.steps.size());
+  Vector time(count), kinetic(count), elastic(count), work(count);
+  for (Index k = 0; k < count; ++k) {
+    time[k] = run.steps[k].time;
+    kinetic[k] = run.steps[k].kinetic;
+    elastic[k] = run.steps[k].elastic;
+    work[k] = run.steps[k].work;
+  }
+  const ExitGuard guard;
+  draw_plot(path, {.title = "Energy",
+                   .x = {.label = "time [s]", .low = 0.0, .high = time[count - 1]},
+                   .y = {.label = "energy [J]"},
+                   .series = {{"kinetic", time, kinetic},
+                              {"elastic", time, elastic},
+                              {"kinetic + elastic", time, kinetic + elastic},
+                              {"work of loads", time, work, PlotStyle::DashedLine}}});
+}
+
+Json report_json(const SimulateCommand& command, const Scene& scene, const SimulationOptions& options,
+                 const Simulation& run, const Effort& effort) {
+  Json json;
+  json["command"] = "simulate";
+  json["version"] = SUPPLE_VERSION;
+  json["model"] = command.model.string();
+  json["system"] = command.full ? "full" : "reduced";
+  json["unknowns"] = run.unknowns;
+  json["scene"] = command.scene ? command.scene->string() : "pluck";
+  json["description"] = scene.description;
+  json["status"] = run.finite() ? "complete" : "not-finite";
+  json["duration"] = run.steps[run.finite() ? run.num_steps() : run.num_steps() - 1].time;
+  json["step"] = options.step;
+  json["steps"] = run.num_steps();
+  json["solver"] = name_of(options.newmark.solver);
+  json["tolerance"] = options.newmark.tolerance;
+  if (!command.full) json["precision"] = options.precision == RowPrecision::Single ? "single" : "double";
+  json["steps_per_second"] = effort.steps_per_second;
+  json["mean_iterations"] = effort.mean_iterations;
+  json["most_iterations"] = effort.most_iterations;
+  json["refreshes"] = effort.refreshes;
+  json["worst_residual"] = effort.worst_residual;
+  json["missed_steps"] = effort.missed;
+  json["frames"] = run.times.size();
+  json["every"] = options.every;
+  json["tracked"] = Json::array();
+  for (std::size_t j = 0; j < scene.track.size(); ++j)
+    json["tracked"].push_back({{"node", scene.track[j]},
+                               {"largest_displacement", run.tracked.middleCols<3>(3 * j).rowwise().norm().maxCoeff()}});
+  json["threads"] = num_threads();
+  return json;
+}
+
+void print_summary(const SimulateCommand& command, const Scene& scene, const SimulationOptions& options,
+                   const Simulation& run, const Effort& effort, double reconstruction) {
+  Rows rows{
+      {"scene", scene.description},
+      {"system", (command.full ? "full, " : "reduced, ") + shown_count(run.unknowns) + " unknowns"},
+      {"steps", shown_count(run.num_steps()) + " of " + shown(options.step, 3) + " s"},
+      {"speed", shown(effort.steps_per_second) + " steps/s, " + shown(effort.steps_per_second * options.step, 3) +
+                    " times real time"},
+      {"iterations", shown(effort.mean_iterations, 3) + " a step, " + std::to_string(effort.most_iterations) +
+                         " at most; " + shown_count(effort.refreshes) + " tangents"},
+      {"residual", "at most " + shown(effort.worst_residual, 2) + ", asked for " + shown(options.newmark.tolerance)}};
+  if (reconstruction > 0)
+    rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(run.times.size()), 3) +
+                                            " ms a frame of all nodes");
+  for (std::size_t j = 0; j < scene.track.size(); ++j)
+    rows.emplace_back(
+        "node " + std::to_string(scene.track[j]),
+        "displaced by at most " + shown(run.tracked.middleCols<3>(3 * j).rowwise().norm().maxCoeff(), 3) + " m");
+  if (!command.output.empty()) rows.emplace_back("results", command.output.string());
+  print_rows(stdout, "simulation of " + command.model.string(), rows);
+}
+
+}  // namespace
+
+void SimulateCommand::run() const {
+  set_num_threads(threads);
+  require_writable(json);
+  StageTimes times;
+  const ReducedModel reduced = load_model(model);
+  Scene what = scene ? read_scene(*scene, reduced.body) : pluck_scene(reduced);
+  const SimulationOptions options = decide(*this, reduced, what);
+  const OutputFolder folder(output);
+  times.finish("read model");
+
+  const Progress progress = progress_bar();
+  const Simulation result =
+      full ? simulate_full(reduced.body, what, options, progress) : simulate_reduced(reduced, what, options, progress);
+  times.add("setup", result.setup_seconds);
+  times.add("time steps", result.integration_seconds);
+  times.add("energies and frames", times.current() - result.setup_seconds - result.integration_seconds);
+  times.restart();
+  const Effort effort(result);
+  double reconstruction = 0;
+  if (!output.empty()) {
+    const Trajectory trajectory = trajectory_of(*this, result, options);
+    save_trajectory(output / trajectory_file, trajectory);
+    write_energies(output / "energies.csv", result);
+    write_tracked(output / "tracked.csv", what, result);
+    if (result.steps.back().time == 0)
+      warn("there is no step to draw: there will be no energy.png");
+    else if (can_plot())
+      draw_energies(output / "energy.png", result);
+    else
+      warn("gnuplot is not installed: there will be no energy.png");
+    reconstruction = write_frames(
+        output, frames, reduced, trajectory, [](double t) { return "t = " + shown(t, 3) + " s"; }, progress);
+    times.finish("results");
+  }
+  clear_progress();
+  Json report = report_json(*this, what, options, result, effort);
+  report["reconstruction_seconds"] = reconstruction;
+  report["seconds"] = json_seconds(times.seconds(), times.total());
+  report["peak_memory"] = peak_resident_memory();
+  if (!output.empty()) write_json(output / "report.json", report);
+  if (!is_stdout(json)) {
+    print_summary(*this, what, options, result, effort, reconstruction);
+    print_stages(stdout, times.seconds(), times.total());
+  }
+  write_json(json, report);
+  if (!result.finite())
+    throw SolverError("step " + std::to_string(result.num_steps()) +
+                      " (t = " + shown(static_cast<double>(result.num_steps()) * options.step) +
+                      " s) is not finite; the results end before it. A shorter --step or --solver newton may help");
+  if (effort.missed > 0)
+    warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) + " steps missed the tolerance " +
+         shown(options.newmark.tolerance) + " (worst residual " + shown(effort.worst_residual, 2) +
+         "); try a shorter --step or --solver newton");
+}
+
+}  // namespace supple

@@ -1,0 +1,57 @@
+#include <app/report/exit_guard.hpp>
+#include <app/report/terminal.hpp>
+#include <core/output_file.hpp>
+
+#include <cerrno>
+#include <csignal>
+#include <fcntl.h>
+#include <thread>
+#include <unistd.h>
+
+namespace supple {
+
+namespace {
+
+std::recursive_mutex& files() {
+  static auto* const mutex = new std::recursive_mutex;  // outlives the thread that waits
+  return *mutex;
+}
+
+int caught[2];  // a pipe from the handler, in which hardly anything is allowed, to the thread
+
+void pass_on(int signal) {
+  const int error = errno;
+  const auto number = static_cast<unsigned char>(signal);
+  [[maybe_unused]] const ssize_t written = ::write(caught[1], &number, 1);
+  errno = error;
+}
+
+}  // namespace
+
+void watch_for_signals() {
+  if (::pipe2(caught, O_CLOEXEC) != 0) return;
+  files();
+  std::thread([] {
+    unsigned char signal = 0;
+    while (::read(caught[0], &signal, 1) != 1)
+      if (errno != EINTR) return;
+    const std::lock_guard lock(files());
+    clear_progress();
+    _exit(128 + signal);
+  }).detach();
+  struct sigaction handler {};
+  handler.sa_handler = pass_on;
+  handler.sa_flags = SA_RESTART;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction current {};
+    if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler == SIG_IGN) continue;  // as under nohup
+    sigaction(signal, &handler, nullptr);
+  }
+}
+
+ExitGuard::ExitGuard() : lock_(files()) {}
+ExitGuard::ExitGuard(const std::filesystem::path& file) {
+  if (!is_stream(file)) lock_ = std::unique_lock(files());
+}
+
+}  // namespace supple

@@ -1,0 +1,51 @@
+#pragma once
+/// \file Scripted edits: handles on an object and their motions, from a JSON file; see docs/edit-scene.md.
+
+#include <physics/body/body.hpp>
+#include <physics/statics/static_solver.hpp>
+#include <reduction/editing/handles.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace supple {
+
+/// A handle region as the scene names it.
+struct HandleRegion {
+  std::string name;
+  std::vector<Index> nodes;
+  std::optional<Index> samples;
+  std::optional<double> weight;  ///< [N/m]
+};
+
+/// Moves some handles to new places (from rest, not from the last edit), on the way through `increments` solves.
+struct Edit {
+  std::vector<std::pair<Index, RigidMotion>> moves;  ///< handle and motion
+  Index increments = 1;
+};
+
+struct EditScene {
+  std::string description;
+  std::vector<HandleRegion> handles;
+  std::vector<Edit> edits;
+  std::optional<StaticMethod> method;
+  std::optional<double> tolerance;
+  std::optional<Index> max_iterations;
+  std::uint64_t seed = 1;  ///< of the samples
+};
+
+/// \throws InputError naming file, place and what was expected there; unknown keys are refused.
+EditScene read_edit_scene(const std::filesystem::path& path, const Body& body);
+
+/// The handles, ready to grasp. Samples not stated: 100 a handle. Weights not stated: such that all springs of a handle
+/// together are 10⁵ times as stiff as the object against a translation along its softest mode, 10⁵ λ₁ M.
+/// \param softest_eigenvalue  λ₁ [1/s²].  \param mass  M [kg].
+std::vector<Handle> make_handles(const EditScene& scene, double softest_eigenvalue, double mass);
+
+/// The motions of all handles in every solve: solves × handles.
+std::vector<std::vector<RigidMotion>> handle_paths(const EditScene& scene, const std::vector<Handle>& handles,
+                                                   const Points& rest_positions);
+
+}  // namespace supple

@@ -1,0 +1,93 @@
+#include <app/report/exit_guard.hpp>
+#include <app/scene/frames.hpp>
+#include <app/scene/surface.hpp>
+#include <core/stopwatch.hpp>
+#include <io/frames/vtu_writer.hpp>
+
+#include <optional>
+
+namespace supple {
+
+namespace {
+
+/// The start, the frame of the largest displacement, and the one after it that is farthest from that.
+std::vector<Index> telling_frames(const std::vector<Points>& surface_displacement) {
+  Index largest = 0, farthest = -1;
+  double most = 0, distance = 0;
+  const Index count = static_cast<Index>(surface_displacement.size());
+  for (Index f = 0; f < count; ++f)
+    if (const double norm = surface_displacement[f].norm(); norm > most) {
+      most = norm;
+      largest = f;
+    }
+  for (Index f = largest + 1; f < count; ++f)
+    if (const double norm = (surface_displacement[f] - surface_displacement[largest]).norm(); norm > distance) {
+      distance = norm;
+      farthest = f;
+    }
+  std::vector<Index> frames{0};
+  if (largest > 0) frames.push_back(largest);
+  if (farthest > 0) frames.push_back(farthest);
+  return frames;
+}
+
+void draw_frames(const std::filesystem::path& path, const Points& rest, const std::vector<Triangle>& triangles,
+                 const std::vector<Points>& displacement, const Vector& times,
+                 const std::function<std::string(double)>& caption) {
+  std::vector<PictureObject> objects;
+  for (const Index f : telling_frames(displacement)) {
+    PictureObject object{.positions = rest + displacement[f], .triangles = triangles};
+    object.scalar = displacement[f].rowwise().norm();
+    object.caption = caption(times[f]);
+    objects.push_back(std::move(object));
+  }
+  write_coloured_picture(path, objects, "displacement [m]", 1600, 800);
+}
+
+}  // namespace
+
+double write_frames(const std::filesystem::path& folder, const std::string& frames, const ReducedModel& model,
+                    const Trajectory& trajectory, const std::function<std::string(double)>& caption,
+                    const Progress& progress) {
+  const Points& nodes = node_positions(model.body);
+  const Surface surface(model.body);
+  const Points rest = surface.rows(nodes);
+  const std::filesystem::path list = folder / "series.pvd";
+  const bool all_cells = frames == "cells" || frames == "tets";
+  std::optional<VtuSeries> series;
+  if (frames != "none") {
+    const ExitGuard guard;
+    if (std::filesystem::exists(list))  // an earlier run may have left more frames than this one has
+      for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().extension() == ".vtu" && entry.path().filename().string().starts_with("series_"))
+          std::filesystem::remove(entry.path());
+    series.emplace(list);
+  }
+  std::vector<Points> surface_displacement;
+  double seconds = 0;
+  for (Index f = 0; f < trajectory.num_frames(); ++f) {
+    const Stopwatch watch;
+    const Vector u = frame_displacement(trajectory, model, f);
+    seconds += watch.seconds();
+    surface_displacement.push_back(surface.rows(as_points(u)));
+    if (series) {
+      const Vector v = frame_velocity(trajectory, model, f);
+      const ExitGuard guard;
+      if (all_cells && !std::holds_alternative<Shell>(model.body))
+        visit_solid(model.body, [&](const auto& solid) {
+          series->add(trajectory.time[f], nodes + as_points(u), solid.mesh.cells,
+                      {.point_data = {vector_field("displacement [m]", u), vector_field("velocity [m/s]", v)}});
+        });
+      else
+        series->add(trajectory.time[f], rest + surface_displacement.back(), surface.triangles,
+                    {.point_data = {{"displacement [m]", surface_displacement.back()},
+                                    {"velocity [m/s]", surface.rows(as_points(v))}}});
+    }
+    tell(progress, "frames", static_cast<double>(f + 1) / static_cast<double>(trajectory.num_frames()));
+  }
+  tell(progress, "picture", 0);
+  draw_frames(folder / "picture.png", rest, surface.triangles, surface_displacement, trajectory.time, caption);
+  return seconds;
+}
+
+}  // namespace supple

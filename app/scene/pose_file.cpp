@@ -1,0 +1,47 @@
+#include <app/scene/pose_file.hpp>
+#include <app/scene/trajectory.hpp>
+#include <core/check.hpp>
+#include <core/tensor_file.hpp>
+#include <io/table/matrix_file.hpp>
+
+namespace supple {
+
+namespace {
+
+Matrix frames_of_trajectory(const std::filesystem::path& path, const Points& nodes) {
+  const Trajectory trajectory = load_trajectory(path);
+  const ReducedModel model = load_model_of(trajectory, path);
+  if (!has_nodes(model.body, nodes))
+    throw InputError(path.string() + ": the trajectory is of another mesh than the one to be reduced");
+  std::vector<Index> deformed;
+  for (Index f = 0; f < trajectory.num_frames(); ++f)
+    if (!trajectory.u.row(f).isZero(0)) deformed.push_back(f);
+  Matrix poses(3 * nodes.rows(), static_cast<Index>(deformed.size()));
+  for (Index t = 0; t < poses.cols(); ++t) poses.col(t) = frame_displacement(trajectory, model, deformed[t]);
+  return poses;
+}
+
+}  // namespace
+
+Matrix read_poses(const std::filesystem::path& path, const Points& nodes) {
+  if (std::filesystem::is_directory(path)) return read_poses(path / trajectory_file, nodes);
+  Matrix poses;
+  if (is_matrix_file(path)) {
+    poses = read_matrix(path);
+  } else if (const TensorFile file(path); file.contains("poses")) {
+    poses = file.matrix("poses");
+  } else if (file.contains("time")) {
+    poses = frames_of_trajectory(path, nodes);
+  } else {
+    throw InputError(path.string() + ": there is no array 'poses', and it is no trajectory");
+  }
+  if (poses.cols() == 0) throw InputError(path.string() + ": there are no poses");
+  for (Index t = 0; t < poses.cols(); ++t) {
+    if (!poses.col(t).allFinite()) throw InputError(path.string() + ": pose " + std::to_string(t) + " is not finite");
+    if (poses.col(t).isZero(0))
+      throw InputError(path.string() + ": pose " + std::to_string(t) + " is at rest, where there is no force to fit");
+  }
+  return poses;
+}
+
+}  // namespace supple

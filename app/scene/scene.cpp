@@ -1,0 +1,149 @@
+#include <app/scene/scene.hpp>
+#include <core/check.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <io/text/json_fields.hpp>
+
+namespace supple {
+
+bool TimeSpan::contains(double t) const {
+  const double rounding = 1e-9 * (std::abs(t) + ramp);  // of a time that is a multiple of the step
+  return t >= from - rounding && t <= until + rounding;
+}
+
+double TimeSpan::share(double t) const {
+  return !contains(t) ? 0 : ramp == 0 ? 1 : std::clamp((t - from) / ramp, 0.0, 1.0);
+}
+
+Point TimedSprings::displacement(double t) const {
+  const Index after = std::upper_bound(times.begin(), times.end(), t) - times.begin();
+  if (after == 0) return displacements.row(0).transpose();
+  if (after == times.size()) return displacements.row(after - 1).transpose();
+  const double share = (t - times[after - 1]) / (times[after] - times[after - 1]);
+  return ((1 - share) * displacements.row(after - 1) + share * displacements.row(after)).transpose();
+}
+
+Index nearest_node(const Points& nodes, const Point& point) {
+  Index nearest = 0;
+  (nodes.rowwise() - point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+  return nearest;
+}
+
+namespace {
+
+TimeSpan read_span(const JsonFields& fields) {
+  TimeSpan span;
+  span.from = fields.number_or("from", span.from, any_number, "s");
+  span.until = fields.number_or("until", span.until, any_number, "s");
+  span.ramp = fields.number_or("ramp", span.ramp, non_negative, "s");
+  if (span.until < span.from) fields.fail("until", "is before 'from'");
+  return span;
+}
+
+Index read_node(const JsonFields& fields, const Body& body) {
+  return fields.integer("node", between(0, static_cast<double>(num_nodes(body) - 1)));
+}
+
+/// The nodes that "node", "at" or "nodes" names, exactly one of them, with their shares of the whole: by
+/// mass, so that a finer mesh is not pulled harder.
+std::vector<std::pair<Index, double>> read_nodes(const JsonFields& fields, const Body& body) {
+  if (fields.contains("node") + fields.contains("at") + fields.contains("nodes") != 1)
+    throw InputError(fields.source() + ": " + fields.place() + " needs one of 'node', 'at' and 'nodes'");
+  if (fields.contains("node")) return {{read_node(fields, body), 1.0}};
+  if (fields.contains("at")) return {{nearest_node(node_positions(body), fields.point("at")), 1.0}};
+  std::vector<Index> nodes;
+  try {
+    nodes = select_nodes(node_positions(body), fields.text("nodes"));
+  } catch (const InputError& error) {
+    fields.fail("nodes", std::string("selects nothing: ") + error.what());
+  }
+  const Vector mass = nodal_mass(body);
+  std::vector<std::pair<Index, double>> shares;
+  double sum = 0;
+  for (const Index v : nodes) sum += mass[v];
+  for (const Index v : nodes) shares.emplace_back(v, mass[v] / sum);
+  return shares;
+}
+
+TimedSprings read_springs(const JsonFields& fields, const Body& body) {
+  TimedSprings result;
+  const double stiffness = fields.number("stiffness", positive, "N/m");
+  for (const auto& [node, share] : read_nodes(fields, body)) result.springs.emplace_back(node, share * stiffness);
+  result.when = read_span(fields);
+  const bool target = fields.contains("target"), displacement = fields.contains("displacement"),
+             path = fields.contains("path");
+  if (target + displacement + path > 1)
+    throw InputError(fields.source() + ": " + fields.place() + " has several of 'target', 'displacement' and 'path'");
+  result.times = Vector::Zero(1);
+  result.displacements = Points::Zero(1, 3);
+  if (displacement) result.displacements = fields.point("displacement").transpose();
+  if (target) {
+    if (result.springs.size() > 1) fields.fail("target", "is one point for several nodes; give a 'displacement'");
+    result.displacements = fields.point("target").transpose() - node_positions(body).row(result.springs.front().first);
+  }
+  if (path) {
+    const std::vector<JsonFields> keys = fields.objects("path");
+    if (keys.empty()) fields.fail("path", "is empty, expected at least one {\"time\": ..., \"displacement\": [...]}");
+    result.times.resize(static_cast<Index>(keys.size()));
+    result.displacements.resize(result.times.size(), 3);
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      result.times[k] = keys[k].number("time", any_number, "s");
+      result.displacements.row(k) = keys[k].point("displacement").transpose();
+      if (k > 0 && !(result.times[k] > result.times[k - 1])) keys[k].fail("time", "is not after the one before");
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string_view name_of(NonlinearSolver solver) {
+  return solver == NonlinearSolver::Newton ? "newton" : solver == NonlinearSolver::Bfgs ? "bfgs" : "broyden";
+}
+
+NonlinearSolver solver_named(std::string_view name) {
+  for (const NonlinearSolver solver : {NonlinearSolver::Newton, NonlinearSolver::Bfgs, NonlinearSolver::Broyden})
+    if (name == name_of(solver)) return solver;
+  throw std::invalid_argument("there is no solver '" + std::string(name) + "', expected newton, bfgs or broyden");
+}
+
+Scene read_scene(const std::filesystem::path& path, const Body& body) {
+  const JsonFields file = JsonFields::read(path);
+  Scene scene;
+  scene.description = file.text_or("description", path.filename().string());
+  if (file.contains("duration")) scene.duration = file.number("duration", positive, "s");
+  if (file.contains("step")) scene.step = file.number("step", positive, "s");
+
+  const Point gravity = file.point_or("gravity", Point::Zero(), "m/s^2");
+  if (!gravity.isZero(0)) scene.loads.push_back({{.gravity = gravity, .forces = {}, .springs = {}}, {}});
+  for (const JsonFields& pull : file.objects_if("pulls"))
+    scene.loads.push_back(
+        {{.gravity = pull.point("acceleration", "m/s^2"), .forces = {}, .springs = {}}, read_span(pull)});
+  for (const JsonFields& fields : file.objects_if("forces")) {
+    TimedLoads timed{{}, read_span(fields)};
+    const Point force = fields.point("force", "N");
+    for (const auto& [node, share] : read_nodes(fields, body)) timed.loads.forces.push_back({node, share * force});
+    scene.loads.push_back(std::move(timed));
+  }
+  for (const JsonFields& fields : file.objects_if("springs")) scene.springs.push_back(read_springs(fields, body));
+
+  if (const auto damping = file.object_if("damping"))
+    scene.damping = {damping->number_or("alpha", 0, non_negative, "1/s"),
+                     damping->number_or("beta", 0, non_negative, "s")};
+  if (const auto solver = file.object_if("solver")) {
+    if (solver->contains("method"))
+      scene.solver = solver_named(solver->choice("method", {"newton", "bfgs", "broyden"}));
+    if (solver->contains("tolerance")) scene.tolerance = solver->number("tolerance", positive);
+    if (solver->contains("max_iterations")) scene.max_iterations = solver->integer("max_iterations", at_least(1));
+    if (solver->contains("beta")) scene.beta = solver->number("beta", positive);
+    if (solver->contains("gamma")) scene.gamma = solver->number("gamma", positive);
+  }
+  if (const auto output = file.object_if("output")) {
+    if (output->contains("every")) scene.every = output->integer("every", at_least(1));
+    if (output->contains("track"))
+      scene.track = output->integers("track", between(0, static_cast<double>(num_nodes(body) - 1)));
+  }
+  file.finish();
+  return scene;
+}
+
+}  // namespace supple

@@ -1,0 +1,73 @@
+#pragma once
+/// \file What happens to an object: loads and springs over time, from a JSON file; see docs/scene.md.
+
+#include <core/types.hpp>
+#include <physics/load/loads.hpp>
+#include <physics/time/newmark.hpp>
+#include <reduction/pipeline/reduced_model.hpp>
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace supple {
+
+/// When something acts, both ends included, and how it sets in.
+struct TimeSpan {
+  double from = 0, until = std::numeric_limits<double>::infinity();  ///< [s]
+  double ramp = 0;  ///< it grows linearly from nothing during this time [s]
+
+  bool contains(double t) const;
+  /// 0 outside, 1 inside when the ramp is over.
+  double share(double t) const;
+};
+
+/// Loads in fixed proportions, times the share of their time span. No springs.
+struct TimedLoads {
+  Loads loads;
+  TimeSpan when;
+};
+
+/// Springs that pull nodes along one common path.
+struct TimedSprings {
+  std::vector<std::pair<Index, double>> springs;  ///< node and stiffness [N/m]
+  Vector times;                                   ///< of the path, ascending [s]
+  Points displacements;                           ///< one for each time [m]; linear between, constant outside
+  TimeSpan when;                                  ///< the ramp scales the displacement
+
+  Point displacement(double t) const;
+};
+
+struct Scene {
+  std::optional<double> duration, step;  ///< [s]
+  std::vector<TimedLoads> loads;
+  std::vector<TimedSprings> springs;
+  std::optional<RayleighDamping> damping;
+  std::optional<NonlinearSolver> solver;
+  std::optional<double> tolerance, beta, gamma;
+  std::optional<Index> max_iterations, every;
+  std::vector<Index> track;  ///< nodes
+  std::string description;   ///< in a line
+};
+
+/// "newton", "bfgs", "broyden".
+std::string_view name_of(NonlinearSolver solver);
+/// \param name  one of these.
+NonlinearSolver solver_named(std::string_view name);
+
+/// \throws InputError naming file, place and what was expected there; unknown keys are refused.
+Scene read_scene(const std::filesystem::path& path, const Body& body);
+
+/// The node closest to a point.
+Index nearest_node(const Points& nodes, const Point& point);
+
+/// A scene for any model: pulled for half a period T of its softest flexible mode, then released, for three
+/// periods in steps of T/60. Held objects are pulled sideways as by gravity, along the axis that gives way
+/// most; free ones are bent by forces in balance, along their softest mode. By linear theory the motion
+/// reaches a tenth of the diagonal.
+Scene pluck_scene(const ReducedModel& model);
+
+}  // namespace supple

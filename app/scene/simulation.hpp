@@ -1,0 +1,49 @@
+#pragma once
+/// \file A scene run through time, and what is recorded on the way.
+
+#include <app/scene/scene.hpp>
+#include <core/progress.hpp>
+#include <reduction/pipeline/reduced_model.hpp>
+
+#include <vector>
+
+namespace supple {
+
+struct SimulationOptions {
+  double step = 0;  ///< [s]
+  Index num_steps = 0;
+  Index every = 1;  ///< a frame after so many steps
+  NewmarkOptions newmark;
+  RowPrecision precision = RowPrecision::Double;  ///< of a reduced system
+};
+
+/// The state after a step, and what the step took.
+struct StepRecord {
+  double time = 0;                            ///< [s]
+  double kinetic = 0, elastic = 0, work = 0;  ///< energies, and the work of loads and springs so far [J]
+  Index iterations = 0, refreshes = 0;
+  double residual = 0;  ///< relative, see NewmarkOptions::tolerance
+  Status status = Status::Converged;
+};
+
+struct Simulation {
+  Index unknowns = 0;
+  std::vector<StepRecord> steps;  ///< the first is the start; ends early with a NotFinite one
+  RowMatrix tracked;              ///< one row a step: displacements of the scene's tracked nodes [m]
+  std::vector<double> times;      ///< of the frames [s]
+  /// Frames × coordinates: reduced coordinates, or displacements [m] and velocities [m/s] of all nodes.
+  RowMatrix u, v;
+  double setup_seconds = 0;        ///< system, loads, first factorisation
+  double integration_seconds = 0;  ///< the steps alone
+
+  Index num_steps() const { return static_cast<Index>(steps.size()) - 1; }
+  bool finite() const { return steps.back().status != Status::NotFinite; }
+};
+
+/// From rest at t = 0. \throws SolverError if the system has no stable rest state.
+Simulation simulate_reduced(const ReducedModel& model, const Scene& scene, const SimulationOptions& options,
+                            const Progress& progress);
+Simulation simulate_full(const Body& body, const Scene& scene, const SimulationOptions& options,
+                         const Progress& progress);
+
+}  // namespace supple

@@ -1,0 +1,75 @@
+#pragma once
+/// \file The formats behind read_solid_mesh: each turns a text into a FileMesh.
+
+#include <io/text/cursor.hpp>
+#include <physics/mesh/cell_mesh.hpp>
+
+#include <span>
+#include <unordered_map>
+
+namespace supple {
+
+/// A mesh as a file tells it: indices are in range, nothing else is certain.
+struct FileMesh {
+  std::string format;
+  std::vector<Point> nodes;
+  std::vector<Tet> tets;                        ///< the corners of tets of any order
+  std::vector<std::array<Index, 6>> mid_edges;  ///< of the tets of second order, in turn; as QuadraticTet has them
+  std::vector<std::array<Index, 8>> hexahedra;  ///< as TrilinearHex has them
+  std::vector<int> region;                      ///< one a tet or hexahedron, in order of the file, or empty
+  std::map<int, std::string> region_names;
+  MeshNumbers numbers;
+  std::vector<std::string> warnings;
+
+  Index num_higher = 0;                      ///< tets of order three or more, of which only the corners were taken
+  Index num_lower = 0;                       ///< cells of lower dimension, left out
+  std::map<std::string, Index> other_solid;  ///< prisms and the like, which are refused, by kind
+
+  /// Tets and hexahedra.
+  Index num_cells() const { return static_cast<Index>(tets.size() + hexahedra.size()); }
+  /// \param cell  its corners, or its ten nodes as QuadraticTet has them.
+  void add_tet(std::span<const Index> cell);
+  void add_hexahedron(std::span<const Index> cell);
+};
+
+/// Puts the mid-edge nodes in the order of QuadraticTet where a format leaves theirs open: for all tets the one that
+/// brings each next to the middle of its edge. \throws InputError if there is none.
+void order_mid_edges(FileMesh& mesh, const Cursor& in);
+
+void read_gmsh(Cursor& in, FileMesh& mesh);
+void read_medit(Cursor& in, FileMesh& mesh);
+void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh);
+void read_vega(Cursor& in, FileMesh& mesh);
+void read_legacy_vtk(Cursor& in, FileMesh& mesh);
+void read_vtu(const Cursor& in, FileMesh& mesh);
+
+/// Index of the node that a file calls by `number`, where nodes are numbered in turn from `first`.
+Index node_at(const Cursor& in, std::int64_t number, std::int64_t first, Index num_nodes);
+
+/// Cells as both VTK formats list them: cell c names the nodes connectivity[offsets[c] … offsets[c + 1]),
+/// which count from `first_node` of the mesh.
+struct VtkCells {
+  std::vector<std::int64_t> offsets, connectivity, types;
+  std::vector<double> region;  ///< one a cell, or empty
+};
+void add_vtk_cells(const VtkCells& cells, Index first_node, const Cursor& in, FileMesh& mesh);
+
+/// The region that an array of floating-point numbers tells; 0 (none) for what is no tag.
+int to_region(double value);
+
+/// Whether a cell array of that name tells regions.
+bool is_region_array(std::string_view name);
+
+/// Finds nodes by the numbers of a file that need neither begin at 1 nor be in order.
+class NumberTable {
+ public:
+  /// \throws InputError at the cursor if a number occurs twice.
+  NumberTable(const std::vector<std::int64_t>& numbers, const Cursor& in);
+  Index find(std::int64_t number, const Cursor& in) const;
+
+ private:
+  std::int64_t first_ = 0, last_ = -1;  // numbers in turn need no table
+  std::unordered_map<std::int64_t, Index> table_;
+};
+
+}  // namespace supple

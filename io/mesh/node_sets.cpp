@@ -1,0 +1,166 @@
+#include <core/check.hpp>
+#include <io/mesh/node_sets.hpp>
+#include <io/text/cursor.hpp>
+#include <io/text/index_file.hpp>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <set>
+
+namespace supple {
+namespace {
+
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+std::optional<double> to_finite(std::string_view text) {
+  text = trim(text);
+  double value = 0;
+  const auto [rest, error] = std::from_chars(text.data() + text.starts_with('+'), text.data() + text.size(), value);
+  if (error != std::errc() || rest != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+[[noreturn]] void fail(std::string_view rule, const std::string& message) {
+  throw InputError("node selection \"" + std::string(rule) + "\": " + message);
+}
+
+template <typename Is>
+std::vector<Index> nodes_where(Index num_nodes, std::string_view rule, const Is& is_selected) {
+  std::vector<Index> selected;
+  for (Index v = 0; v < num_nodes; ++v)
+    if (is_selected(v)) selected.push_back(v);
+  if (selected.empty()) fail(rule, "selects no node");
+  return selected;
+}
+
+template <typename Mesh>
+std::vector<Index> region_nodes(const Mesh& mesh, std::string_view region) {
+  std::optional<int> tag;
+  for (const auto& [number, name] : mesh.region_names)
+    if (name == region) tag = number;
+  if (!tag) {
+    int number = 0;
+    const auto [rest, error] = std::from_chars(region.data(), region.data() + region.size(), number);
+    if (error == std::errc() && rest == region.data() + region.size()) tag = number;
+  }
+  std::vector<char> is_member(mesh.num_nodes(), false);
+  bool exists = false;
+  for (std::size_t e = 0; e < mesh.region.size(); ++e)
+    if (tag && mesh.region[e] == *tag) {
+      exists = true;
+      for (const Index v : mesh.cells[e]) is_member[v] = true;
+    }
+  if (!exists) {
+    std::string known;
+    for (const int number : std::set<int>(mesh.region.begin(), mesh.region.end())) {
+      if (known.size() > 200) {
+        known += ", …";
+        break;
+      }
+      const auto name = mesh.region_names.find(number);
+      known += (known.empty() ? "" : ", ") + std::to_string(number);
+      if (name != mesh.region_names.end()) known += " (" + name->second + ")";
+    }
+    fail(region, known.empty() ? "the mesh has no regions" : "no such region; the mesh has " + known);
+  }
+  return nodes_where(mesh.num_nodes(), region, [&](Index v) { return is_member[v]; });
+}
+
+}  // namespace
+
+std::vector<Index> select_nodes(const Points& nodes, std::string_view rule) {
+  const std::string expectation =
+      "expected an axis, < <= > or >=, and a coordinate or a share, such as y<4% or x>=0.25";
+  std::string_view rest = trim(rule);
+  if (rest.empty() || rest[0] < 'x' || rest[0] > 'z') fail(rule, expectation);
+  const int axis = rest[0] - 'x';
+  rest = trim(rest.substr(1));
+  if (!rest.starts_with('<') && !rest.starts_with('>')) fail(rule, expectation);
+  const bool is_below = rest[0] == '<', or_equal = rest.size() > 1 && rest[1] == '=';
+  rest = trim(rest.substr(or_equal ? 2 : 1));
+  const bool is_share = rest.ends_with('%');
+  const std::optional<double> value = to_finite(is_share ? rest.substr(0, rest.size() - 1) : rest);
+  if (!value) fail(rule, expectation);
+
+  const BoundingBox box = bounding_box(nodes);
+  const double bound = is_share ? std::lerp(box.lower[axis], box.upper[axis], *value / 100) : *value;
+  return nodes_where(nodes.rows(), rule, [&](Index v) {
+    const double x = nodes(v, axis);
+    return (or_equal && x == bound) || (is_below ? x < bound : x > bound);
+  });
+}
+
+std::vector<Index> select_nodes(const Points& nodes, const std::vector<std::string>& rules) {
+  std::set<Index> selected;
+  for (const std::string& rule : rules)
+    for (const Index v : select_nodes(nodes, rule)) selected.insert(v);
+  return {selected.begin(), selected.end()};
+}
+
+std::vector<Index> nodes_in_box(const Points& nodes, std::string_view box) {
+  const std::string expectation = "expected xmin,ymin,zmin:xmax,ymax,zmax";
+  std::array<double, 6> bounds;
+  std::string_view rest = box;
+  for (int k = 0; k < 6; ++k) {
+    const std::size_t end = k == 5 ? rest.size() : rest.find(k == 2 ? ':' : ',');
+    const std::optional<double> value = end == std::string_view::npos ? std::nullopt : to_finite(rest.substr(0, end));
+    if (!value) fail(box, expectation);
+    bounds[k] = *value;
+    if (k < 5) rest.remove_prefix(end + 1);
+  }
+  const Point lower(bounds[0], bounds[1], bounds[2]), upper(bounds[3], bounds[4], bounds[5]);
+  if ((lower.array() > upper.array()).any()) fail(box, "a lower bound is above its upper bound; " + expectation);
+  return nodes_where(nodes.rows(), box, [&](Index v) {
+    const Point x = nodes.row(v);
+    return (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all();
+  });
+}
+
+std::vector<Index> nodes_of_region(const TetMesh& mesh, std::string_view region) {
+  return region_nodes(mesh, region);
+}
+std::vector<Index> nodes_of_region(const HexMesh& mesh, std::string_view region) {
+  return region_nodes(mesh, region);
+}
+std::vector<Index> nodes_of_region(const QuadraticTetMesh& mesh, std::string_view region) {
+  return region_nodes(mesh, region);
+}
+
+std::vector<Index> read_node_set(const Points& nodes, const std::filesystem::path& path) {
+  return read_indices(path, "node", nodes.rows());
+}
+
+std::vector<Index> nodes_with_label(const Points& nodes, const std::filesystem::path& path, int label) {
+  const std::string text = read_bytes(path);
+  std::vector<Index> selected;
+  Index node = 0, line_number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line(text.data() + begin, end - begin);
+    begin = end + 1;
+    ++line_number;
+    line = trim(line.substr(0, line.find('#')));
+    while (!line.empty() && (line.back() == '\r' || line.back() == '\t')) line = trim(line.substr(0, line.size() - 1));
+    if (line.empty()) continue;
+    int value = 0;
+    const auto [rest, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+    if (error != std::errc() || rest != line.data() + line.size())
+      throw InputError(path.string() + ":" + std::to_string(line_number) +
+                       ": expected a whole number, the label of node " + std::to_string(node));
+    if (node < nodes.rows() && value == label) selected.push_back(node);
+    ++node;
+  }
+  if (node != nodes.rows())
+    throw InputError(path.string() + ": has " + std::to_string(node) + " labels, expected one for each of the " +
+                     std::to_string(nodes.rows()) + " nodes");
+  if (selected.empty()) throw InputError(path.string() + ": no node has the label " + std::to_string(label));
+  return selected;
+}
+
+}  // namespace supple

@@ -1,0 +1,41 @@
+#pragma once
+/// \file Sets of nodes in words: which ones to hold, to pull, to watch.
+
+#include <physics/mesh/cell_mesh.hpp>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace supple {
+
+/// Nodes on one side of a plane: an axis, one of < <= > >=, and a coordinate [m] or a share of the bounding
+/// box along that axis, counted from its lower end: "y<4%", "x >= 0.25".
+/// \return ascending node indices, at least one.
+/// \throws InputError naming the rule if it has another form or selects no node.
+std::vector<Index> select_nodes(const Points& nodes, std::string_view rule);
+
+/// Nodes that at least one of the rules selects, ascending; none for no rules.
+std::vector<Index> select_nodes(const Points& nodes, const std::vector<std::string>& rules);
+
+/// Nodes in a closed box between two corners [m]: "xmin,ymin,zmin:xmax,ymax,zmax".
+/// \throws InputError as above, and if a lower bound is above its upper bound.
+std::vector<Index> nodes_in_box(const Points& nodes, std::string_view box);
+
+/// Nodes of the cells of a region, given by its name or its number.
+/// \throws InputError if the mesh has no such region; it lists those it has.
+std::vector<Index> nodes_of_region(const TetMesh& mesh, std::string_view region);
+std::vector<Index> nodes_of_region(const HexMesh& mesh, std::string_view region);
+std::vector<Index> nodes_of_region(const QuadraticTetMesh& mesh, std::string_view region);
+
+/// Node indices from a text file: counted from 0, one a line; '#' begins a comment.
+/// \return ascending, each once.
+/// \throws InputError with the line if one is not in the mesh; or if the file names none.
+std::vector<Index> read_node_set(const Points& nodes, const std::filesystem::path& path);
+
+/// Nodes with a label, from a text file with one whole number a node, in order of the nodes; '#' begins a comment.
+/// \throws InputError if there are not as many as nodes, one is no whole number, or no node has the label.
+std::vector<Index> nodes_with_label(const Points& nodes, const std::filesystem::path& path, int label);
+
+}  // namespace supple

@@ -1,0 +1,98 @@
+#pragma once
+/// \file One face for symmetric positive definite solves, sparse or dense, and the few operations that
+/// assembling a system matrix takes for either.
+
+#include <core/check.hpp>
+#include <numerics/linear/cholmod_solver.hpp>
+
+#include <Eigen/Cholesky>
+
+namespace supple {
+
+/// Factorise once, solve many times. factorize() returns false if the matrix is not positive definite.
+template <typename MatrixType>
+class SpdSolver;
+
+template <>
+class SpdSolver<SparseMatrix> {
+ public:
+  /// The pattern is analysed at the first call only.
+  [[nodiscard]] bool factorize(const SparseMatrix& A) {
+    if (analyzed_nonzeros_ != A.nonZeros()) {
+      cholesky_.analyze(A, has_blocks_of_three(A) ? 3 : 1);
+      analyzed_nonzeros_ = A.nonZeros();
+    }
+    return cholesky_.factorize(A);
+  }
+  Vector solve(VectorIn b) const { return cholesky_.solve(b); }
+
+ private:
+  /// Whether rows come in triples of as many entries each, as those of nodes in ℝ³ do.
+  static bool has_blocks_of_three(const SparseMatrix& A) {
+    if (A.rows() % 3 != 0) return false;
+    const auto length = [&](Index j) { return A.outerIndexPtr()[j + 1] - A.outerIndexPtr()[j]; };
+    for (Index j = 0; j < A.cols(); j += 3)
+      if (length(j) % 3 != 0 || length(j + 1) != length(j) || length(j + 2) != length(j)) return false;
+    return true;
+  }
+
+  CholmodSolver cholesky_;
+  Index analyzed_nonzeros_ = -1;
+};
+
+template <>
+class SpdSolver<Matrix> {
+ public:
+  /// Keeps the inverse: a product with it is several times faster than two triangular solves of this size.
+  [[nodiscard]] bool factorize(const Matrix& A) {
+    inverse_.resize(0, 0);
+    const Eigen::LLT<Matrix> cholesky(A);
+    if (cholesky.info() != Eigen::Success || !A.allFinite()) return false;  // NaN is a success to Eigen
+    inverse_ = cholesky.solve(Matrix::Identity(A.rows(), A.cols()));
+    return true;
+  }
+  Vector solve(VectorIn b) const {
+    require(inverse_.size() > 0, "solve: there is no factorisation");
+    require_size("b", b.size(), inverse_.rows());
+    return inverse_ * b;
+  }
+
+ private:
+  Matrix inverse_;
+};
+
+/// Whether two matrices are equal, one without entries to itself only.
+inline bool equal(const Matrix& A, const Matrix& B) {
+  return A.size() == B.size() && A == B;
+}
+inline bool equal(const SparseMatrix& A, const SparseMatrix& B) {
+  return A.size() == B.size() && (A.size() == 0 || (A - B).norm() == 0);
+}
+
+/// A += s B; B has the pattern of A.
+inline void add_scaled(Matrix& A, double s, const Matrix& B) {
+  A += s * B;
+}
+inline void add_scaled(SparseMatrix& A, double s, const SparseMatrix& B) {
+  require_size("the matrix to add", B.nonZeros(), A.nonZeros());
+  Eigen::Map<Vector>(A.valuePtr(), A.nonZeros()) += s * Eigen::Map<const Vector>(B.valuePtr(), B.nonZeros());
+}
+
+/// A += diag(v).
+inline void add_diagonal(Matrix& A, VectorIn v) {
+  A.diagonal() += v;
+}
+inline void add_diagonal(SparseMatrix& A, VectorIn v) {
+  for (Index j = 0; j < A.cols(); ++j) A.coeffRef(j, j) += v[j];
+}
+
+/// A += B for a B with few entries, each in the pattern of A.
+inline void add_few(Matrix& A, const Matrix& B) {
+  A += B;
+}
+inline void add_few(SparseMatrix& A, const SparseMatrix& B) {
+  for (Index j = 0; j < B.cols(); ++j)
+    for (SparseMatrix::InnerIterator it(B, j); it; ++it) A.coeffRef(it.row(), it.col()) += it.value();
+}
+
+}  // namespace supple

@@ -1,0 +1,37 @@
+#pragma once
+/// \file What integrators and static solvers see: the full system (sparse) and the reduced system (dense)
+/// alike.
+
+#include <core/types.hpp>
+#include <physics/load/loads.hpp>
+#include <physics/model/force_model.hpp>
+
+#include <concepts>
+
+namespace supple {
+
+/// Masses M and forces f(u) with K = ∂f/∂u, in `dim` unknowns: what is left to integrate in time when an object is
+/// discretised in space. FirstOrderIntegrator asks for no more.
+///
+/// A system also promises: mass() > 0; f(0) = 0; stiffness is the derivative of force, symmetric unless
+/// has_symmetric_tangent<S>() is false; const calls safe from several threads.
+template <typename S>
+concept SemidiscreteSystem = requires(const S& system, VectorIn u, VectorOut f, typename S::MatrixType& K) {
+  { system.dim() } -> std::convertible_to<Index>;
+  { system.mass() } -> std::convertible_to<const Vector&>;                            // diagonal of M (lumped) [kg]
+  system.force(u, f);                                                                 // f [N]
+  system.stiffness(u, K);                                                             // K [N/m]
+  { system.rest_stiffness() } -> std::convertible_to<const typename S::MatrixType&>;  // K(0), symmetric
+};
+
+/// M ü + D u̇ + f(u) = f_ext of an object in ℝ³ with f = ∂E/∂u, so K is symmetric: what Newmark and static solvers see.
+///
+/// A system also promises that energy and force agree by differentiation.
+template <typename S>
+concept DynamicalSystem = SemidiscreteSystem<S> && has_symmetric_tangent<S>() &&
+    requires(const S& system, VectorIn u, const Loads& loads) {
+  { system.energy(u) } -> std::convertible_to<double>;                            // E [J]
+  { system.project(loads) } -> std::same_as<AffineLoad<typename S::MatrixType>>;  // loads on nodes → on unknowns
+};
+
+}  // namespace supple

@@ -1,0 +1,224 @@
+#pragma once
+/// \file The unreduced system: every node, sparse matrices.
+
+#include <core/check.hpp>
+#include <core/pack.hpp>
+#include <core/parallel.hpp>
+#include <physics/model/explain_force_model.hpp>
+#include <physics/model/term_pack.hpp>
+#include <physics/system/dynamical_system.hpp>
+#include <physics/system/node_numbering.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace supple {
+
+/// Any ForceModel with lumped masses (for heat: capacities [J/K]) and fixed nodes, whose unknowns are zero. Unknowns
+/// are the displacements (temperatures) of the free nodes, interleaved (x₀ y₀ z₀ x₁ …); expand() and restrict() go to
+/// and from vectors over all nodes. Forces and tangents are evaluated in packs of eight components; sums have a fixed
+/// order, so results do not depend on the number of threads.
+template <typename Model>
+class FullSystem {
+  static_assert(explain_force_model<Model>());
+
+ public:
+  using MatrixType = SparseMatrix;
+  static constexpr int node_dim = Model::node_dim;
+  static constexpr bool symmetric_tangent = has_symmetric_tangent<Model>();
+
+  /// \param nodal_mass  n, > 0 [kg].  \param fixed_nodes  nodes that never move, in any order.
+  FullSystem(Model model, Vector nodal_mass, const std::vector<Index>& fixed_nodes = {})
+      : FullSystem(std::make_shared<const Model>(std::move(model)), std::move(nodal_mass), fixed_nodes) {}
+
+  FullSystem(std::shared_ptr<const Model> model, Vector nodal_mass, const std::vector<Index>& fixed_nodes = {})
+      : model_(std::move(model)),
+        nodal_mass_(std::move(nodal_mass)),
+        numbering_(model_->num_nodes(), fixed_nodes),
+        pattern_(numbering_, node_dim) {
+    require_size("nodal_mass", nodal_mass_.size(), model_->num_nodes());
+    require((nodal_mass_.array() > 0).all(), "every node needs a mass > 0");
+    mass_.resize(dim());
+    for (Index f = 0; f < numbering_.num_free(); ++f)
+      mass_.segment<node_dim>(f * node_dim).setConstant(nodal_mass_[numbering_.free_nodes()[f]]);
+    const Index m = model_->num_components();
+    require(m > 0, "the force model has no components");
+    std::vector<Index> stencils;
+    stencils.reserve(m * Model::stencil_size);
+    for (Index i = 0; i < m; ++i) {
+      const std::span<const Index, Model::stencil_size> nodes = model_->stencil(i);
+      stencils.insert(stencils.end(), nodes.begin(), nodes.end());
+    }
+    for (Index first = 0; first < m; first += Pack::size) packs_.emplace_back(model_, consecutive_components(first, m));
+    stencils_ = std::move(stencils);
+    incidence_ = NodeIncidence(stencils_, Model::stencil_size, model_->num_nodes());
+    pattern_.build(stencils_, Model::stencil_size, incidence_);
+    rest_stiffness_ = pattern_.zero_matrix();
+    stiffness(Vector::Zero(dim()), rest_stiffness_);
+  }
+
+  Index dim() const { return numbering_.num_free() * node_dim; }
+  Index num_nodes() const { return model_->num_nodes(); }
+  const Model& model() const { return *model_; }
+  const std::shared_ptr<const Model>& shared_model() const { return model_; }
+  const NodeNumbering& numbering() const { return numbering_; }
+  std::span<const Index> stencils() const { return stencils_; }  ///< stencil_size nodes a component
+
+  const Vector& mass() const { return mass_; }              ///< dim [kg]
+  const Vector& nodal_mass() const { return nodal_mass_; }  ///< n [kg]
+
+  double energy(VectorIn u) const requires PotentialModel<Model> {
+    const Vector full = expand(u);
+    std::vector<double> partial(num_chunks());
+    parallel_for(num_chunks(), [&](Index chunk) {
+      Pack sum(0.0);
+      for_packs(chunk, [&](Index p, int lanes) {
+        const Pack e = packs_[p].energy(gather(full, p));
+        for (int k = 0; k < lanes; ++k) sum.set(k, sum[k] + e[k]);
+      });
+      partial[chunk] = sum.sum();
+    });
+    double total = 0;
+    for (const double e : partial) total += e;
+    return total;
+  }
+
+  void force(VectorIn u, VectorOut f) const {
+    require_size("f", f.size(), dim());
+    Vector full(num_nodes() * node_dim);
+    full_force(expand(u), full);
+    f = restrict(full);
+  }
+  Vector force(VectorIn u) const {
+    Vector f(dim());
+    force(u, f);
+    return f;
+  }
+
+  /// Forces on all nodes, fixed ones too (there, the negative of the reaction), at displacements of all
+  /// nodes.
+  void full_force(VectorIn u, VectorOut f) const {
+    require_size("u", u.size(), num_nodes() * node_dim);
+    require_size("f", f.size(), num_nodes() * node_dim);
+    // one buffer a calling thread, kept: a fresh one would cost as much in page faults as the arithmetic
+    static thread_local std::vector<Pack> buffer;
+    buffer.resize(packs_.size() * Model::local_dofs);
+    Pack* const local = buffer.data();
+    parallel_for(num_chunks(), [&](Index chunk) {
+      for_packs(chunk, [&](Index p, int) {
+        const auto f_p = packs_[p].force(gather(u, p));
+        std::copy_n(f_p.data(), Model::local_dofs, local + p * Model::local_dofs);
+      });
+    });
+    const double* const values = reinterpret_cast<const double*>(local);
+    parallel_ranges(num_nodes(), 4096, [&](Index begin, Index end) {
+      for (Index v = begin; v < end; ++v) {
+        Local<node_dim> sum = Local<node_dim>::Zero();
+        for (const Index slot : incidence_.of(v)) {  // slot = component · stencil_size + corner
+          const Index i = slot / Model::stencil_size, corner = slot % Model::stencil_size;
+          const double* at =
+              values + ((i / Pack::size) * Model::local_dofs + corner * node_dim) * Pack::size + i % Pack::size;
+          for (int c = 0; c < node_dim; ++c) sum[c] += at[c * Pack::size];
+        }
+        f.template segment<node_dim>(v * node_dim) = sum;
+      }
+    });
+  }
+
+  /// K becomes the tangent stiffness; its pattern, the same at every call, is set up when K does not have it
+  /// yet.
+  void stiffness(VectorIn u, SparseMatrix& K) const {
+    const Vector full = expand(u);
+    if (K.rows() != dim() || K.nonZeros() != pattern_.num_nonzeros()) K = pattern_.zero_matrix();
+    double* const values = K.valuePtr();
+    std::fill_n(values, K.nonZeros(), 0.0);
+    constexpr Index local_size = Model::local_dofs * Model::local_dofs;
+    constexpr Index chunks_at_once = 16;  // bounds the buffer, whatever the size of the mesh
+    std::vector<Pack> buffer(std::min(chunks_at_once, num_chunks()) * packs_per_chunk * local_size);
+    const int owners = num_threads();
+    for (Index first = 0; first < num_chunks(); first += chunks_at_once) {
+      const Index last = std::min(num_chunks(), first + chunks_at_once);
+      parallel_for(last - first, [&](Index c) {
+        for_packs(first + c, [&](Index p, int) {
+          const auto K_p = packs_[p].stiffness(gather(full, p));
+          std::copy_n(K_p.data(), local_size, buffer.data() + (p - first * packs_per_chunk) * local_size);
+        });
+      });
+      const Index begin = first * packs_per_chunk * Pack::size;
+      const Index end = std::min<Index>(model_->num_components(), last * packs_per_chunk * Pack::size);
+      parallel_for(owners, [&](Index owner) {  // each adds to its own columns, in order of components
+        pattern_.scatter(owner, owners, begin, end, reinterpret_cast<const double*>(buffer.data()), values);
+      });
+    }
+  }
+  SparseMatrix stiffness(VectorIn u) const {
+    SparseMatrix K = pattern_.zero_matrix();
+    stiffness(u, K);
+    return K;
+  }
+  const SparseMatrix& rest_stiffness() const { return rest_stiffness_; }
+
+  /// Forces on all nodes, n · node_dim → on the unknowns.
+  AffineLoad<SparseMatrix> project(VectorIn nodal_forces) const { return {restrict(nodal_forces), {}}; }
+  AffineLoad<SparseMatrix> project(const Loads& loads) const requires(node_dim == 3) {
+    check_loads(loads, num_nodes());
+    AffineLoad<SparseMatrix> result{Vector::Zero(dim()), {}};
+    if (!loads.gravity.isZero(0))
+      for (Index f = 0; f < numbering_.num_free(); ++f)
+        result.force.segment<3>(3 * f) += nodal_mass_[numbering_.free_nodes()[f]] * loads.gravity;
+    for (const NodalForce& load : loads.forces)
+      if (const Index f = numbering_.free_index(load.node); f >= 0) result.force.segment<3>(3 * f) += load.force;
+    std::vector<Eigen::Triplet<double>> diagonal;
+    for (const PointSpring& spring : loads.springs)
+      if (const Index f = numbering_.free_index(spring.node); f >= 0) {
+        result.force.segment<3>(3 * f) += spring.stiffness * spring.displacement;
+        for (int c = 0; c < 3; ++c) diagonal.emplace_back(3 * f + c, 3 * f + c, spring.stiffness);
+      }
+    if (!diagonal.empty()) {
+      result.stiffness.resize(dim(), dim());
+      result.stiffness.setFromTriplets(diagonal.begin(), diagonal.end());
+    }
+    return result;
+  }
+
+  /// Unknowns → displacements of all nodes (n · node_dim), zero where fixed.
+  Vector expand(VectorIn u) const { return numbering_.expand(u, node_dim); }
+  /// Values at all nodes → at the unknowns.
+  Vector restrict(VectorIn full) const { return numbering_.restrict(full, node_dim); }
+
+ private:
+  static constexpr Index packs_per_chunk = 64;
+
+  Index num_chunks() const { return (static_cast<Index>(packs_.size()) + packs_per_chunk - 1) / packs_per_chunk; }
+
+  /// body(pack, number of lanes that are real components)
+  template <typename Body>
+  void for_packs(Index chunk, const Body& body) const {
+    const Index end = std::min<Index>(packs_.size(), (chunk + 1) * packs_per_chunk);
+    for (Index p = chunk * packs_per_chunk; p < end; ++p)
+      body(p, static_cast<int>(std::min<Index>(Pack::size, model_->num_components() - p * Pack::size)));
+  }
+
+  Local<Model::local_dofs, Pack> gather(VectorIn full, Index p) const {
+    Local<Model::local_dofs, Pack> u;
+    const PackIndices lanes = consecutive_components(p * Pack::size, model_->num_components());
+    for (int k = 0; k < Pack::size; ++k) {
+      const Index* nodes = stencils_.data() + lanes[k] * Model::stencil_size;
+      for (int a = 0; a < Model::stencil_size; ++a)
+        for (int c = 0; c < node_dim; ++c) u[a * node_dim + c].set(k, full[nodes[a] * node_dim + c]);
+    }
+    return u;
+  }
+
+  std::shared_ptr<const Model> model_;
+  Vector nodal_mass_;
+  NodeNumbering numbering_;
+  Vector mass_;
+  std::vector<TermPack<Model>> packs_;
+  std::vector<Index> stencils_;
+  NodeIncidence incidence_;
+  NodeBlockPattern pattern_;
+  SparseMatrix rest_stiffness_;
+};
+
+}  // namespace supple

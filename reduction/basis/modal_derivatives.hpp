@@ -1,0 +1,50 @@
+#pragma once
+/// \file How vibration modes change as the object deforms: subspaces for large deformations.
+
+#include <reduction/basis/modal_basis.hpp>
+#include <reduction/subspace/rest_state.hpp>
+
+#include <array>
+
+namespace supple {
+
+/// θ_ij = −K⁻¹ H(φ_i, φ_j) with the second derivative H of the internal force at rest (see ForceCurvature):
+/// the static response u(s, t) to the load K (s φ_i + t φ_j) is s φ_i + t φ_j + ½ s² θ_ii + s t θ_ij +
+/// ½ t² θ_jj + … Symmetric in i and j. Where motions without energy exist, loads and θ_ij are taken
+/// M-orthogonal to them.
+struct ModalDerivativeVectors {
+  Matrix vectors;                           ///< 3n × r (r + 1) / 2, zero at fixed nodes [1/kg, as φ φ]
+  std::vector<std::array<Index, 2>> pairs;  ///< (i, j), i ≤ j, of each column: columns of modes.vectors
+  double residual = 0;                      ///< largest ‖K θ + H‖ / ‖H‖
+};
+
+/// The derivatives of all modes with energy. One factorisation, r (r + 1) / 2 solves with refinement and
+/// 2 r (r + 1) evaluations of the force; equal bits for any num_threads().
+/// \throws SolverError if K is not positive semi-definite, or a residual cannot be made small.
+ModalDerivativeVectors modal_derivatives(const RestState& object, const VibrationModes& modes, double tolerance = 1e-8,
+                                         const Progress& progress = {});
+
+/// Linear modes and their modal derivatives (Idelsohn & Cardona 1985; Barbič & James 2005): r modes give up
+/// to r (r + 3) / 2 dimensions, free parts six more each.
+struct ModalDerivatives {
+  Index num_modes = 15;  ///< r, beside the rigid ones; 10 to 20. The derivatives grow as r²
+  /// d, rigid motions and modes included; 0: all derivatives. Fewer are the leading principal components of
+  /// what the derivatives add to the modes, in the mass norm, with θ_ij weighted by λ₁² / (λ_i λ_j), λ = ω²:
+  /// the spread of a response to loads that excite low frequencies most. Subspaces of growing d are nested.
+  Index dimension = 0;
+  bool affine_fields = false;  ///< free parts bring all 12 affine motions instead of the 6 rigid ones
+  double tolerance = 1e-8;     ///< of modes and derivatives, relative residuals
+  std::uint64_t seed = 1;
+  Progress progress = {};
+
+  /// \throws std::invalid_argument if `dimension` has no room for the modes.
+  template <typename System>
+  requires(System::node_dim == 3) DenseBasis operator()(const System& system) const {
+    return build(rest_state(system));
+  }
+  DenseBasis build(const RestState& object) const;
+};
+
+static_assert(SubspaceBuilder<ModalDerivatives>);
+
+}  // namespace supple

@@ -1,0 +1,47 @@
+#include <core/check.hpp>
+#include <numerics/linear/tall_qr.hpp>
+#include <reduction/basis/pca_basis.hpp>
+
+#include <Eigen/SVD>
+
+namespace supple {
+
+DenseBasis PcaBasis::build(const RestState& object) const {
+  const Index node_dim = object.node_dim;
+  require_size("snapshots.rows()", snapshots.rows(), node_dim * object.numbering.num_nodes());
+  require(snapshots.cols() > 0, "there are no snapshots");
+  require(snapshots.allFinite(), "a snapshot has an entry that is not finite");
+  require(dimension >= 0, "the dimension is " + std::to_string(dimension) + ", expected at least 0");
+  require(energy > 0 && energy <= 1, "the share of energy is " + std::to_string(energy) + ", expected (0, 1]");
+  for (const Index v : object.numbering.fixed_nodes())
+    require(snapshots.middleRows(node_dim * v, node_dim).isZero(0),
+            "a snapshot moves node " + std::to_string(v) + ", which is fixed");
+  const double largest = snapshots.cwiseAbs().maxCoeff();
+  require(largest > 0, "all snapshots are zero");
+
+  const Vector root = object.mass.cwiseSqrt();
+  const ThinQr qr = tall_qr(root.asDiagonal() * object.restrict(snapshots));
+  const Eigen::BDCSVD<Matrix> svd(qr.R, Eigen::ComputeThinU);
+  const Vector& sigma = svd.singularValues();
+  SubspaceReport report;
+  report.singular_values = sigma;
+  Index rank = 0;
+  while (rank < sigma.size() && sigma[rank] > 1e-12 * sigma[0]) ++rank;
+  report.dropped = snapshots.cols() - rank;
+  Index d = dimension > 0 ? std::min(dimension, rank) : rank;
+  if (energy < 1) {
+    double left_out = sigma.tail(sigma.size() - d).squaredNorm();
+    const double allowed = (1 - energy) * sigma.squaredNorm();
+    while (d > 1 && left_out + sigma[d - 1] * sigma[d - 1] <= allowed) {
+      left_out += sigma[d - 1] * sigma[d - 1];
+      --d;
+    }
+  }
+  if (dimension > rank)
+    report.notes.push_back("the snapshots span " + std::to_string(rank) + " dimensions, fewer than the " +
+                           std::to_string(dimension) + " asked for");
+  const Matrix U = root.cwiseInverse().asDiagonal() * (qr.Q * svd.matrixU().leftCols(d));
+  return {object.expand(U), std::move(report)};
+}
+
+}  // namespace supple

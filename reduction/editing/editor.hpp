@@ -1,0 +1,91 @@
+#pragma once
+/// \file Deformation-based editing: the shape of least energy under handles (Eq. 3 and Sec. 6).
+
+#include <physics/statics/static_solver.hpp>
+#include <reduction/editing/handles.hpp>
+
+namespace supple {
+
+/// Handles on an object and its equilibrium under them. Handles come, go and move at any time; each solve starts from
+/// the last state. Works on the reduced system (milliseconds) and on the full one (the reference) alike:
+///
+///     Editor editor(system, positions, {.method = StaticMethod::Bfgs});
+///     const Index hand = editor.add({nodes, 100, weight});
+///     editor.move(hand, RigidMotion::turn({0, 0, 1}, 0.3, wrist));
+///     editor.solve();
+///     const Vector u = system.subspace().reconstruct(editor.state());
+template <DynamicalSystem System>
+class Editor {
+ public:
+  /// \param system          must outlive the editor.  \param rest_positions  n × 3 [m]
+  Editor(const System& system, Points rest_positions, const StaticOptions& options = {})
+      : system_(system), rest_positions_(std::move(rest_positions)), solver_(system, options) {
+    reset();
+  }
+
+  /// \return the number to call the handle by. \throws std::invalid_argument for nodes that do not exist.
+  Index add(Handle handle) {
+    (void)handle_loads({handle}, rest_positions_);  // are its nodes there?
+    handles_.push_back(std::move(handle));
+    changed_ = true;
+    return static_cast<Index>(handles_.size()) - 1;
+  }
+  void remove_all() {
+    handles_.clear();
+    changed_ = true;
+  }
+  /// From rest to where the motion takes it, not from the last place.
+  void move(Index handle, const RigidMotion& motion) {
+    require(handle >= 0 && handle < static_cast<Index>(handles_.size()),
+            "handle " + std::to_string(handle) + " does not exist, there are " + std::to_string(handles_.size()));
+    handles_[handle].motion = motion;
+  }
+  const std::vector<Handle>& handles() const { return handles_; }
+
+  /// To the equilibrium under the handles, from the last state. \return see StaticSolver; a state that is not finite
+  /// is not kept.
+  StaticReport solve() {
+    const Loads springs = handle_loads(handles_, rest_positions_);
+    if (changed_) {  // the stiffness depends on the samples only
+      load_ = system_.project(springs);
+      changed_ = false;
+    } else {
+      Loads forces;
+      for (const PointSpring& spring : springs.springs)
+        forces.forces.push_back({spring.node, spring.stiffness * spring.displacement});
+      load_.force = system_.project(forces).force;
+    }
+    Vector u = state_;
+    const StaticReport report = solver_.solve(load_, u);
+    if (report.status != Status::NotFinite) state_ = std::move(u);
+    return report;
+  }
+
+  const Vector& state() const { return state_; }  ///< unknowns of the system
+  void reset() { state_ = Vector::Zero(system_.dim()); }
+  /// Where the next solve starts; a full system likes to be led by a reduced one.
+  void start_from(Vector state) {
+    require_size("state", state.size(), system_.dim());
+    state_ = std::move(state);
+  }
+
+  double elastic_energy() const { return system_.energy(state_); }  ///< [J]
+  /// E^C [J].
+  double control_energy(VectorIn displacement) const {
+    double sum = 0;
+    for (const PointSpring& spring : handle_loads(handles_, rest_positions_).springs)
+      sum += 0.5 * spring.stiffness * (displacement.segment<3>(3 * spring.node) - spring.displacement).squaredNorm();
+    return sum;
+  }
+
+ private:
+  const System& system_;
+  Points rest_positions_;
+  StaticSolver<System> solver_;
+  std::vector<Handle> handles_;
+  AffineLoad<typename System::MatrixType> load_;
+  Vector state_;
+  bool changed_ = true;
+};
+
+}  // namespace supple

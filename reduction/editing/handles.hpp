@@ -1,0 +1,54 @@
+#pragma once
+/// \file Handles: parts of an object that a user grasps and moves rigidly.
+
+#include <core/check.hpp>
+#include <core/types.hpp>
+#include <physics/load/loads.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cstdint>
+#include <vector>
+
+namespace supple {
+
+/// x ↦ R x + t of points in space.
+struct RigidMotion {
+  Matrix3<double> rotation = Matrix3<double>::Identity();
+  Point translation = Point::Zero();  ///< [m]
+
+  Point operator()(const Point& x) const { return rotation * x + translation; }
+
+  /// First `first`, then this.
+  RigidMotion after(const RigidMotion& first) const { return {rotation * first.rotation, (*this)(first.translation)}; }
+  RigidMotion inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
+
+  /// A turn by `angle` [rad] about an axis through a centre [m], then a translation [m].
+  static RigidMotion turn(const Point& axis, double angle, const Point& centre,
+                          const Point& translation = Point::Zero());
+  /// \param matrix  4 × 4, acting on (x, 1). \throws std::invalid_argument unless it is a rigid motion to 1e-4; its
+  /// rotation is the nearest proper one.
+  static RigidMotion from(const Eigen::Matrix4d& matrix);
+  /// The share s ∈ [0, 1] of the motion of a body about `centre`: its rotation at constant speed about a fixed axis,
+  /// its translation along a line.
+  RigidMotion part(double s, const Point& centre) const;
+};
+
+/// One handle: nodes of which a random sample C is pulled to where a rigid motion takes them, with the energy
+/// w Σ_{i ∈ C} ‖v_i − v'_i‖² (Sec. 6).
+struct Handle {
+  std::vector<Index> samples;  ///< C, ascending
+  double weight = 0;           ///< w [N/m]
+  RigidMotion motion = {};
+
+  /// \param nodes   of the handle region; \param count  |C| at most.  \param weight  w [N/m], > 0.
+  Handle(const std::vector<Index>& nodes, Index count, double weight, std::uint64_t seed = 1);
+
+  Point centre(const Points& rest_positions) const;  ///< mean of the samples at rest [m]
+};
+
+/// The control energy of some handles as springs of stiffness 2 w to the prescribed positions.
+/// \throws std::invalid_argument for a sample that is no node.
+Loads handle_loads(const std::vector<Handle>& handles, const Points& rest_positions);
+
+}  // namespace supple

@@ -1,0 +1,154 @@
+#include <reduction/pipeline/reduce_stages.hpp>
+#include <reduction/pipeline/selection_study.hpp>
+#include <sparse/selectors/nn_sp.hpp>
+
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace supple {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Median seconds of a call, in batches that last long enough to time.
+template <typename Call>
+double median_seconds(const Call& call) {
+  std::vector<double> batches(15);
+  for (double& batch : batches) {
+    const Stopwatch watch;
+    int calls = 0;
+    for (; watch.seconds() < 1e-3; ++calls) call();
+    batch = watch.seconds() / calls;
+  }
+  std::nth_element(batches.begin(), batches.begin() + batches.size() / 2, batches.end());
+  return batches[batches.size() / 2];
+}
+
+}  // namespace
+
+struct SelectionStudy::Interface {
+  virtual ~Interface() = default;
+  virtual const AnyProblem& problem() const = 0;
+  virtual double held_out_error(const std::vector<Index>& indices, VectorIn weights) const = 0;
+  virtual SelectionMeasure measure(const Selection& selection) const = 0;
+
+  ReduceReport report;
+  std::vector<PullScene> scenes;
+  std::vector<double> reached;
+};
+
+template <typename AnyTraining>
+struct SelectionStudy::Model final : Interface {
+  using Stacked = StackedProblem<typename AnyTraining::Fitting, typename decltype(AnyTraining::equilibria)::value_type>;
+  using Pulls = PullTest<typename AnyTraining::Model,
+                         std::remove_const_t<typename decltype(AnyTraining::subspace)::element_type>>;
+
+  Model(AnyTraining&& some, double diagonal, std::vector<PullScene> pulled, Stages& stage)
+      : training(std::move(some)),
+        stacked(training.equilibria ? std::optional<Stacked>(std::in_place, training.fitting, *training.equilibria)
+                                    : std::nullopt),
+        any(stacked ? AnyProblem(*stacked) : AnyProblem(training.fitting)) {
+    exact_softest = training.softest_eigenvalues(training.rest_stiffness, 1)[0];
+    if (pulled.empty()) return;
+    stage("reference motions", [&](auto) {
+      const Index m = training.fitting.cols();
+      const Selection rough = NnSp{.max_iterations = 5}(any, std::min(m, 2 * training.fitting.poses().rows()));
+      pulls.emplace(std::move(pulled), training.modes, diagonal, training.reduced_system(rough.indices, rough.weights));
+      std::vector<Index> all(m);
+      std::iota(all.begin(), all.end(), Index{0});
+      const auto unfitted = training.reduced_system(all, Vector::Ones(m));
+      references = pulls->move(unfitted);
+      for (std::size_t k = 0; k < references.size(); ++k) {
+        this->reached.push_back(pulls->reach(unfitted, references[k].q));
+        if (references[k].missed_steps > 0)
+          stage.report().notes.push_back(std::to_string(references[k].missed_steps) +
+                                         " steps of the reference motion '" + pulls->scenes()[k].name +
+                                         "' missed the tolerance");
+      }
+    });
+    this->scenes = pulls->scenes();
+  }
+
+  const AnyProblem& problem() const override { return any; }
+  double held_out_error(const std::vector<Index>& indices, VectorIn weights) const override {
+    return training.held_out.empty() ? nan : training.held_out.front().second.error(indices, weights);
+  }
+
+  SelectionMeasure measure(const Selection& selection) const override {
+    SelectionMeasure measure;
+    measure.softest_eigenvalue = measure.force_seconds = nan;
+    measure.trajectory_errors.assign(references.size(), nan);
+    const auto hold_out = [&](std::span<const Index> indices, VectorIn weights) {
+      for (const auto& [share, problem] : training.held_out)
+        measure.held_out.emplace_back(share, problem.error(indices, weights));
+    };
+    WorkingComponents working = with_positive_weights(selection.indices, selection.weights);
+    if (working.indices.empty() || (selection.weights.array() < 0).any()) {
+      hold_out(selection.indices, selection.weights);
+      return measure;
+    }
+    working = training.refitted(working);
+    hold_out(working.indices, working.weights);
+    const auto system = training.reduced_system(working.indices, working.weights);
+    const Vector rest = Vector::Zero(system.dim());
+    measure.softest_eigenvalue = training.softest_eigenvalues(system.stiffness(rest), 1)[0] / exact_softest;
+    Vector force(system.dim());
+    const Vector q = training.fitting.poses().col(0);
+    measure.force_seconds = median_seconds([&] { system.force(q, force); });
+    if (pulls) {
+      const std::vector<PulledMotion> motions = pulls->move(system);
+      for (std::size_t k = 0; k < motions.size(); ++k)
+        measure.trajectory_errors[k] = deviation(motions[k], references[k]);
+    }
+    return measure;
+  }
+
+  AnyTraining training;
+  std::optional<Stacked> stacked;  // if there are equilibria
+  AnyProblem any;
+  double exact_softest = 0;
+  std::optional<Pulls> pulls;
+  std::vector<PulledMotion> references;
+};
+
+SelectionStudy::SelectionStudy(const Body& body, const ReduceOptions& options, std::vector<PullScene> scenes,
+                               const Progress& progress) {
+  check(options);
+  const Stopwatch total;
+  ReduceReport report;
+  Stages stage(report, progress);
+  const double diagonal = bounding_box(node_positions(body)).diagonal();
+  with_training(body, options, stage, [&]<typename AnyTraining>(AnyTraining&& training) {
+    self_ = std::make_unique<Model<AnyTraining>>(std::move(training), diagonal, std::move(scenes), stage);
+  });
+  report.total_seconds = total.seconds();
+  report.peak_memory = peak_resident_memory();
+  self_->report = std::move(report);
+}
+
+SelectionStudy::~SelectionStudy() = default;
+SelectionStudy::SelectionStudy(SelectionStudy&&) noexcept = default;
+SelectionStudy& SelectionStudy::operator=(SelectionStudy&&) noexcept = default;
+
+const AnyProblem& SelectionStudy::problem() const {
+  return self_->problem();
+}
+double SelectionStudy::held_out_error(const std::vector<Index>& indices, VectorIn weights) const {
+  return self_->held_out_error(indices, weights);
+}
+SelectionMeasure SelectionStudy::measure(const Selection& selection) const {
+  return self_->measure(selection);
+}
+const ReduceReport& SelectionStudy::report() const {
+  return self_->report;
+}
+const std::vector<PullScene>& SelectionStudy::scenes() const {
+  return self_->scenes;
+}
+const std::vector<double>& SelectionStudy::largest_displacements() const {
+  return self_->reached;
+}
+
+}  // namespace supple

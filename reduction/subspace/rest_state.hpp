@@ -1,0 +1,58 @@
+#pragma once
+/// \file An object at rest, as the construction of subspaces sees it.
+
+#include <core/types.hpp>
+#include <physics/system/node_numbering.hpp>
+
+#include <functional>
+#include <span>
+#include <type_traits>
+
+namespace supple {
+
+/// What subspaces are made from, whatever the force model. Refers to the system, which must
+/// outlive it.
+struct RestState {
+  const SparseMatrix& K;     ///< at rest, over the free unknowns [N/m]
+  const Vector& mass;        ///< of the free unknowns [kg]
+  const Vector& nodal_mass;  ///< n [kg]
+  const Points& positions;   ///< n × 3 [m]
+  const NodeNumbering& numbering;
+  std::span<const Index> stencils;
+  Index stencil_size;
+  Index node_dim;                                      ///< unknowns of a node
+  std::function<void(VectorIn u, VectorOut f)> force;  ///< over the free unknowns; safe from several threads
+
+  /// Columns over the free unknowns → over all nodes, n · node_dim × k, zero where fixed.
+  RowMatrix expand(MatrixIn columns) const {
+    RowMatrix full = RowMatrix::Zero(node_dim * numbering.num_nodes(), columns.cols());
+    for (Index v = 0; v < numbering.num_free(); ++v)
+      full.middleRows(node_dim * numbering.free_nodes()[v], node_dim) = columns.middleRows(node_dim * v, node_dim);
+    return full;
+  }
+  /// And back.
+  Matrix restrict(MatrixIn full) const {
+    Matrix columns(mass.size(), full.cols());
+    for (Index v = 0; v < numbering.num_free(); ++v)
+      columns.middleRows(node_dim * v, node_dim) = full.middleRows(node_dim * numbering.free_nodes()[v], node_dim);
+    return columns;
+  }
+  /// Masses of all n · node_dim unknowns, fixed ones too.
+  Vector mass_of_rows() const { return nodal_mass.replicate(1, node_dim).transpose().reshaped(); }
+};
+
+template <typename System>
+RestState rest_state(const System& system) {
+  using Model = std::remove_cvref_t<decltype(system.model())>;
+  return {system.rest_stiffness(),
+          system.mass(),
+          system.nodal_mass(),
+          system.model().rest_positions(),
+          system.numbering(),
+          system.stencils(),
+          Model::stencil_size,
+          System::node_dim,
+          [&system](VectorIn u, VectorOut f) { system.force(u, f); }};
+}
+
+}  // namespace supple

@@ -1,0 +1,36 @@
+#pragma once
+/// \file The concept of a best-subset selector: min ‖A w − b‖ subject to w ≥ 0, |supp w| ≤ s (von Tycowicz et
+/// al. 2013, Eq. 6).
+
+#include <sparse/problem/fitting_problem.hpp>
+#include <sparse/selection/selection.hpp>
+
+#include <concepts>
+
+namespace supple {
+
+namespace archetype {
+/// The least that is a FittingProblem; declared only.
+struct Fitting {
+  Index rows() const;
+  Index cols() const;
+  const Vector& rhs() const;
+  void column(Index j, VectorOut out) const;
+};
+static_assert(FittingProblem<Fitting>);
+}  // namespace archetype
+
+/// A selector also promises, and supple::testing checks: at most s indices, ascending, each a candidate or
+/// must-keep; weights > 0 (must-keep: ≥ 0); the residual in the report is that of a direct evaluation; equal
+/// requests give equal bits, whatever the number of threads; std::invalid_argument for a request that makes
+/// no sense, InputError for a column or right-hand side that is not finite.
+template <typename S, typename P>
+concept SubsetSelectorFor = FittingProblem<P> &&
+    requires(const S& select, const P& problem, const SelectionRequest& request) {
+  { select(problem, request) } -> std::same_as<Selection>;
+};
+
+template <typename S>
+concept SubsetSelector = SubsetSelectorFor<S, archetype::Fitting>;
+
+}  // namespace supple

@@ -1,0 +1,193 @@
+#include <core/check.hpp>
+#include <io/builtin/builtin_meshes.hpp>
+#include <io/frames/vtu_writer.hpp>
+#include <io/mesh/mesh_reader.hpp>
+#include <physics/mesh/tet_mesh.hpp>
+#include <testing/near.hpp>
+#include <tests/io/mesh_files.hpp>
+#include <tests/support/meshes.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace supple::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+/// 48 tets whose coordinates need all their digits, in two named regions.
+TetMesh two_regions() {
+  TetMesh mesh = perturbed(builtin_mesh("cube:2"), 0.05, 1);
+  for (Index e = 0; e < mesh.num_cells(); ++e) mesh.region.push_back(1 + (e / 6) % 2);
+  mesh.region_names = {{1, "soft"}, {2, "stiff"}};
+  return mesh;
+}
+
+/// The message with which a file of these bytes is refused; empty if it is read.
+std::string refusal(const std::string& bytes, const std::string& name) {
+  try {
+    read_tet_mesh(write(bytes, test_folder() / name));
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+class EveryFormat : public testing::TestWithParam<MeshFile> {};
+
+TEST_P(EveryFormat, KeepsEveryBitAndTheRegions) {
+  const TetMesh expected = two_regions();
+  MeshNotes notes;
+  const TetMesh mesh = read_tet_mesh(write(GetParam(), test_folder()), &notes);
+  EXPECT_TRUE(is_same(mesh.nodes, expected.nodes));
+  EXPECT_EQ(mesh.cells, expected.cells);
+  EXPECT_EQ(mesh.region, expected.region);
+  const bool has_names = GetParam().format.starts_with("gmsh") || GetParam().format == "vega";
+  if (has_names) {
+    EXPECT_EQ(mesh.region_names, expected.region_names);
+  }
+  EXPECT_EQ(notes.numbers.node.size(), 27u);
+  EXPECT_EQ(notes.numbers.cell.size(), 48u);
+  if (GetParam().format == "vega")
+    EXPECT_THAT(notes.warnings, ElementsAre(HasSubstr("material rubber")));
+  else
+    EXPECT_THAT(notes.warnings, IsEmpty());
+}
+
+TEST_P(EveryFormat, IsKnownByItsContentWhateverItsName) {
+  if (GetParam().extension == ".node") return;  // TetGen files have no mark of their own
+  EXPECT_EQ(read_tet_mesh(write(GetParam().bytes, test_folder() / (GetParam().format + ".dat"))).num_cells(), 48);
+}
+
+TEST_P(EveryFormat, RefusesAFileThatEndsTooEarlyOrLosesNothing) {
+  const TetMesh expected = two_regions();
+  const std::string& bytes = GetParam().bytes;
+  for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97) {
+    MeshFile cut = GetParam();
+    cut.bytes = bytes.substr(0, size);
+    try {  // what follows the cells, such as cell data, may be lost
+      const TetMesh mesh = read_tet_mesh(write(cut, test_folder()));
+      EXPECT_TRUE(is_same(mesh.nodes, expected.nodes)) << size;
+      EXPECT_EQ(mesh.cells, expected.cells) << size;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(cut.format)) << size;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Mesh, EveryFormat, testing::ValuesIn(in_every_format(two_regions())),
+                         [](const auto& test) { return test.param.format; });
+
+TEST(ReadTetMesh, FindsTheTetgenPairByEitherNameAndByTheStem) {
+  const TetMesh expected = two_regions();
+  for (const MeshFile& file : in_every_format(expected))
+    if (file.format == "tetgen_from_1") write(file, test_folder());
+  for (const char* name : {"tetgen_from_1.node", "tetgen_from_1.ele", "tetgen_from_1"})
+    EXPECT_EQ(read_tet_mesh(test_folder() / name).cells, expected.cells) << name;
+  std::filesystem::remove(test_folder() / "lonely.ele");
+  EXPECT_THAT(refusal("4 3 0 0\n", "lonely.node"), HasSubstr("lonely.ele: cannot be read"));
+}
+
+TEST(ReadTetMesh, KeepsTheNumbersOfTheFileWhenNodesAreDropped) {
+  MeshNotes notes;
+  const TetMesh mesh = read_tet_mesh(write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n6\n"
+                                           "50 9 9 9\n40 0 0 0\n30 1 0 0\n7 nan 0 0\n20 0 1 0\n10 0 0 1\n$EndNodes\n"
+                                           "$Elements\n1\n77 4 0 40 30 20 10\n$EndElements\n",
+                                           test_folder() / "numbers.msh"),
+                                     &notes);
+  EXPECT_THAT(notes.numbers.node, ElementsAre(40, 30, 20, 10));
+  EXPECT_THAT(notes.numbers.cell, ElementsAre(77));
+  EXPECT_THAT(notes.warnings, ElementsAre("2 nodes belong to no tet: dropped"));
+  EXPECT_THAT(mesh.region, IsEmpty());
+  EXPECT_NEAR(tet_volume(mesh, 0), 1.0 / 6, 1e-15);
+}
+
+TEST(ReadTetMesh, ReadsSeveralPiecesOfAVtuAsOneMesh) {
+  std::string text;
+  for (const MeshFile& file : in_every_format(two_regions()))
+    if (file.format == "vtu_ascii") text = file.bytes;
+  const std::size_t begin = text.find("<Piece"), end = text.find("</UnstructuredGrid>");
+  text.insert(end, text.substr(begin, end - begin));
+  MeshNotes notes;
+  const TetMesh mesh = read_tet_mesh(write(text, test_folder() / "pieces.vtu"), &notes);
+  EXPECT_EQ(mesh.num_nodes(), 54);
+  EXPECT_EQ(mesh.num_cells(), 96);
+  EXPECT_EQ(mesh.region.size(), 96u);
+  EXPECT_EQ(notes.numbers.cell.back(), 95);
+  EXPECT_THAT(notes.warnings,
+              ElementsAre("27 nodes lie where another node is: not merged", "2 components that are not connected"));
+}
+
+TEST(ReadTetMesh, ReadsWhatWriteVtuWrites) {
+  const TetMesh expected = two_regions();
+  RowMatrix region(expected.num_cells(), 1);
+  for (Index e = 0; e < expected.num_cells(); ++e) region(e, 0) = expected.region[e];
+  const std::filesystem::path path = test_folder() / "written.vtu";
+  write_vtu(path, expected.nodes, expected.cells, {.cell_data = {{"region", region}}});
+  const TetMesh mesh = read_tet_mesh(path);
+  EXPECT_TRUE(is_same(mesh.nodes, expected.nodes));
+  EXPECT_EQ(mesh.cells, expected.cells);
+  EXPECT_EQ(mesh.region, expected.region);
+}
+
+TEST(ReadTetMesh, AcceptsWhatNumbersMayLookLike) {
+  const auto read = [](const std::string& x) {
+    return read_tet_mesh(write("MeshVersionFormatted 1\nDimension 3 Vertices 4 0 0 0 0 " + x +
+                                   " 0 0 0 0 1 0 0 0 0 1 0 Tetrahedra 1 1 2 3 4 0",
+                               test_folder() / "numbers.mesh"))
+        .nodes(1, 0);
+  };
+  EXPECT_EQ(read("+1.5e0"), 1.5);
+  EXPECT_EQ(read("1E-3"), 1e-3);
+  EXPECT_EQ(read(".5"), 0.5);
+  EXPECT_THROW(read("1.5f"), InputError);
+  EXPECT_THROW(read("0x1"), InputError);
+  EXPECT_THROW(read("1e400"), InputError);
+  EXPECT_THROW(read("1,5"), InputError);
+}
+
+TEST(ReadTetMesh, NamesFileAndLineOfWhatItCannotRead) {
+  const std::string head = "MeshVersionFormatted 1\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n";
+  EXPECT_THAT(refusal(head + "Tetrahedra\n1\n1 2 3 5 0\n", "a.mesh"),
+              HasSubstr("a.mesh:11: node 5 does not exist: nodes are numbered 1 … 4"));
+  EXPECT_THAT(refusal(head + "Tetrahedra\n1\n1 2 x 4 0\n", "a.mesh"),
+              HasSubstr("a.mesh:11: expected a node number, found \"x\""));
+  EXPECT_THAT(refusal(head + "Tetrahedra\n99999999999\n1 2 3 4 0\n", "a.mesh"),
+              HasSubstr("a.mesh:10: announces 99999999999 tetrahedra, but the 11 bytes that follow cannot hold them"));
+  EXPECT_THAT(refusal(head + "Tetrahedra\n-1\n", "a.mesh"), HasSubstr("number of tetrahedra is negative"));
+  EXPECT_THAT(refusal(head, "a.mesh"), HasSubstr("a.mesh: holds no tetrahedra"));
+  EXPECT_THAT(refusal(head + "Tetrahedra\n1\n1 2 3 3 0\n", "a.mesh"), HasSubstr("tet 1 names node 3 twice"));
+  EXPECT_THAT(refusal(head + "Hexahedra\n1\n1 2 3 4 1 2 3 4 0\n", "a.mesh"),
+              HasSubstr("holds 1 hexahedron; only tetrahedra"));
+}
+
+TEST(ReadTetMesh, NamesFormatsThatItDoesNotRead) {
+  EXPECT_THAT(refusal("", "empty.msh"), HasSubstr("the file is empty"));
+  EXPECT_THAT(refusal("\x1f\x8b\x08", "mesh.msh.gz"), HasSubstr("compressed (gzip)"));
+  EXPECT_THAT(refusal(std::string("\1\0\0\0\3\0\0\0", 8), "mesh.meshb"), HasSubstr("save it as ASCII .mesh"));
+  EXPECT_THAT(refusal("$NOD\n4\n", "old.msh"), HasSubstr("Gmsh format 1"));
+  EXPECT_THAT(refusal("ply\nformat ascii 1.0\n", "surface.ply"), HasSubstr("triangle surface (ply)"));
+  EXPECT_THAT(refusal("hello", "hello.txt"), HasSubstr("Gmsh .msh (2.2, 4.1), Medit .mesh"));
+  EXPECT_THAT(refusal("<?xml version=\"1.0\"?><VTKFile type=\"PolyData\"/>", "surface.vtu"), HasSubstr("PolyData"));
+  EXPECT_THAT(refusal("# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\n", "s.vtk"), HasSubstr("POLYDATA"));
+  EXPECT_THROW(read_tet_mesh(test_folder() / "absent.msh"), InputError);
+  EXPECT_THROW(read_tet_mesh(test_folder()), InputError);
+  EXPECT_THROW(read_tet_mesh(std::string(5000, 'a')), InputError);
+}
+
+TEST(CheckMesh, AcceptsAMeshWhateverItsScaleAndPlace) {
+  for (const double scale : {1e-9, 1.0, 1e9})
+    for (const double shift : {0.0, 1e6}) {
+      TetMesh mesh = builtin_mesh("cube:2");
+      mesh.nodes = (scale * (mesh.nodes.array() + shift)).matrix();
+      EXPECT_NO_THROW(check_mesh(mesh)) << scale << " " << shift;
+    }
+}
+
+}  // namespace
+}  // namespace supple::test
