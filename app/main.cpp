@@ -14,7 +14,7 @@
 #include <io/builtin/builtin_surfaces.hpp>
 #include <io/text/json_fields.hpp>
 #include <physics/body/plugin.hpp>
-#include <reduction/basis/named_subspace.hpp>
+#include <reduction/basis/subspace_library.hpp>
 #include <sparse/selectors/selector_library.hpp>
 
 #include <CLI/CLI.hpp>

@@ -137,9 +137,9 @@ int main(int argc, char** argv) {
     std::vector<PulledMotion> motions;
     for (std::size_t k = 0; k < pulls.scenes().size(); ++k) {  // one by one, for the times
       motions.push_back(pulls.move(system, k));
-      const PulledMotion newton = pulls.move(system, k, NonlinearSolver::Newton);
+      const PulledMotion newton = pulls.move(system, k, Newton{});
       out[pulls.scenes()[k].name] = {{"bfgs", numbers(motions[k])},
-                                     {"broyden", numbers(pulls.move(system, k, NonlinearSolver::Broyden))},
+                                     {"broyden", numbers(pulls.move(system, k, Broyden{}))},
                                      {"newton", numbers(newton)},
                                      {"newton_against_bfgs", deviation(newton, motions[k])},
                                      {"largest_displacement", pulls.reach(system, motions[k].q)}};

@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
   nlohmann::json out{{"mesh", mesh_name}, {"nodes", mesh.num_nodes()}, {"tets", mesh.num_cells()}, {"r", num_modes}};
   with_force_model(solid, [&]<typename Model>(const std::shared_ptr<const Model>& model) {
     const FullSystem<Model> system(model, solid.nodal_mass(), fixed);
-    const RestState object = rest_state(system);
+    const RestState object = system.rest_state();
     const Index rigid = find_free_components(object.stencils, object.stencil_size, object.numbering).num_rigid_modes();
 
     Stopwatch watch;

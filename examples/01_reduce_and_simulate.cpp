@@ -24,9 +24,9 @@ int main() {
 
   const Index tip = select_nodes(mesh.nodes, "x>99%").front();
   return with_reduced_system(model, [&](const auto& system) {
-    Newmark newmark(system, 0.01, {.damping = {.beta = 0.002}, .solver = NonlinearSolver::Bfgs});
+    Newmark newmark(system, 0.01, {.damping = {.beta = 0.002}, .solver = Bfgs{}});
     State state = State::at_rest(system.dim());
-    const AffineLoad<Matrix> load = system.project({.gravity = {0, -1.5, 0}});
+    const SystemLoad<Matrix> load = system.project({.gravity = {0, -1.5, 0}});
     newmark.balance(load, state);
     for (int step = 0; step < 100; ++step)
       if (newmark.step(load, state).status != Status::Converged) return 1;

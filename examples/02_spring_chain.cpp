@@ -59,7 +59,7 @@ int main() {
                           {0});  // held at one end
   Newmark newmark(system, 0.002);
   State state = State::at_rest(system.dim());
-  const AffineLoad<SparseMatrix> gravity = system.project({.gravity = {0, -9.81, 0}});
+  const SystemLoad<SparseMatrix> gravity = system.project({.gravity = {0, -9.81, 0}});
   newmark.balance(gravity, state);
 
   double largest_drift = 0, exchanged = 0;

@@ -49,11 +49,11 @@ int main() {
 
   const FullSystem full(make_model<StVenantKirchhoff>(solid), solid.nodal_mass(), solid.fixed_nodes);
   const Motion reference =
-      simulate(full, NonlinearSolver::Newton, [&](const Vector& u) { return full.expand(u)[watched]; });
+      simulate(full, Newton{}, [&](const Vector& u) { return full.expand(u)[watched]; });
 
   const ReducedModel model = reduce(solid, {.modes = 8, .points = 80});
   const Motion motion = with_reduced_system(model, [&](const auto& system) {
-    return simulate(system, NonlinearSolver::Bfgs, [&](const Vector& q) { return system.subspace().at(watched, q); });
+    return simulate(system, Bfgs{}, [&](const Vector& q) { return system.subspace().at(watched, q); });
   });
 
   std::printf("%td unknowns in full, %td reduced; %td tets, %zu evaluated\n", full.dim(), model.dim(), mesh.num_cells(),

@@ -28,14 +28,14 @@ int main() {
     const Index hand = editor.add(head);
     for (int k = 1; k <= 10; ++k) {
       editor.move(hand, RigidMotion::turn({0, 0, 1}, 0.025 * k * std::numbers::pi, {0, height / 2, 0}));
-      const StaticReport report = editor.solve();
+      const SolveReport report = editor.solve();
       if (report.status != Status::Converged) std::printf("solve %d: residual %.1e\n", k, report.residual);
     }
   };
   Vector u;
   double reduced_energy = 0;
   with_reduced_system(model, [&](const auto& system) {
-    Editor editor(system, mesh.nodes, {.method = StaticMethod::Bfgs});
+    Editor editor(system, mesh.nodes, {.solver = LineSearchBfgs{}});
     bend(editor);
     u = system.subspace().reconstruct(editor.state());
     reduced_energy = editor.elastic_energy();

@@ -25,7 +25,7 @@ int main() {
   const auto solve = [&](const char* name, const auto& system, const auto& displacement) {
     StaticSolver solver(system);
     Vector u = Vector::Zero(system.dim());
-    StaticReport report;
+    SolveReport report;
     for (const double share : {0.25, 0.5, 0.75, 1.0}) {
       Loads part = pull;
       for (PointSpring& spring : part.springs) spring.displacement *= share;

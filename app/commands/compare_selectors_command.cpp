@@ -5,6 +5,7 @@
 #include <app/report/terminal.hpp>
 #include <core/output_file.hpp>
 #include <core/parallel.hpp>
+#include <core/peak_memory.hpp>
 #include <core/stopwatch.hpp>
 #include <core/version.hpp>
 #include <physics/body/force_models.hpp>

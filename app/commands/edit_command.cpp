@@ -4,13 +4,15 @@
 #include <app/report/terminal.hpp>
 #include <app/scene/edit_scene.hpp>
 #include <app/scene/frames.hpp>
+#include <app/scene/solver_names.hpp>
 #include <core/check.hpp>
 #include <core/parallel.hpp>
+#include <core/peak_memory.hpp>
 #include <core/stopwatch.hpp>
 #include <core/version.hpp>
 #include <io/table/csv.hpp>
-#include <physics/body/force_models.hpp>
-#include <physics/system/full_system.hpp>
+#include <physics/body/body_system.hpp>
+#include <physics/system/node_numbering.hpp>
 #include <reduction/editing/editor.hpp>
 #include <reduction/pipeline/reduce.hpp>
 
@@ -22,7 +24,7 @@ namespace supple {
 namespace {
 
 struct SolveRecord {
-  StaticReport report;
+  SolveReport report;
   double elastic = 0, control = 0;  ///< energies [J]
   double seconds = 0;               ///< of the solve
 };
@@ -32,12 +34,12 @@ struct EditRun {
   RowMatrix states;  ///< (1 + solves) × coordinates: those of the model, or displacements of all nodes
 };
 
-/// Solves along the paths. \param displacement  unknowns → displacements of all nodes.
+/// Solves along the paths. \param frame  unknowns → what a frame keeps.
 /// \param lead  called before solve k with the state to start from, which it may improve.
-template <typename System, typename Frame, typename Displacement, typename Lead>
-EditRun run_edits(const System& system, const Points& rest, const std::vector<Handle>& handles,
+template <typename MatrixType, typename Frame, typename Lead>
+EditRun run_edits(const AnySystem<MatrixType>& system, const Points& rest, const std::vector<Handle>& handles,
                   const std::vector<std::vector<RigidMotion>>& path, const StaticOptions& options, const Frame& frame,
-                  const Displacement& displacement, const Lead& lead, const Progress& progress) {
+                  const Lead& lead, const Progress& progress) {
   Editor editor(system, rest, options);
   for (const Handle& handle : handles) (void)editor.add(handle);
   EditRun run;
@@ -51,7 +53,7 @@ EditRun run_edits(const System& system, const Points& rest, const std::vector<Ha
     SolveRecord record{editor.solve(), 0, 0, 0};
     record.seconds = watch.seconds();
     record.elastic = editor.elastic_energy();
-    record.control = editor.control_energy(displacement(editor.state()));
+    record.control = editor.control_energy(system.expand(editor.state()));
     run.solves.push_back(record);
     run.states.row(static_cast<Index>(k) + 1) = frame(editor.state()).transpose();
     tell(progress, "edits", static_cast<double>(k + 1) / static_cast<double>(path.size()));
@@ -73,20 +75,13 @@ void write_solves(const std::filesystem::path& path, const EditRun& run) {
   write_csv(path, table);
 }
 
-const char* to_text(StaticMethod method) {
-  return method == StaticMethod::Newton ? "newton" : method == StaticMethod::Bfgs ? "bfgs" : "nlopt";
-}
-
 StaticOptions decide(const EditCommand& command, const EditScene& scene) {
   StaticOptions options;
-  options.method = scene.method.value_or(StaticMethod::Newton);
-  if (command.solver)
-    options.method = *command.solver == "newton" ? StaticMethod::Newton
-                     : *command.solver == "bfgs" ? StaticMethod::Bfgs
-                                                 : StaticMethod::Nlopt;
-  if (command.full && options.method == StaticMethod::Nlopt) {
+  options.solver = scene.solver.value_or(Newton{});
+  if (command.solver) options.solver = solver_named(static_solvers, *command.solver);
+  if (command.full && std::holds_alternative<Nlopt>(options.solver)) {
     if (command.solver) throw InputError("--solver nlopt is for reduced systems");
-    options.method = StaticMethod::Newton;
+    options.solver = Newton{};
   }
   options.tolerance = command.tolerance.value_or(scene.tolerance.value_or(options.tolerance));
   if (!(options.tolerance > 0)) throw InputError("the tolerance is not positive, expected > 0");
@@ -113,25 +108,23 @@ void EditCommand::run() const {
 
   const Progress progress = progress_bar();
   const auto as_it_is = [](Index, const Vector& state) { return state; };
-  EditRun result = with_reduced_system(reduced, [&](const auto& system) {
-    StaticOptions reduced_options = options;
-    if (full) reduced_options.method = StaticMethod::Newton;
-    return run_edits(
-        system, rest, handles, path, reduced_options, [](VectorIn q) -> Vector { return q; },
-        [&](VectorIn q) -> Vector { return system.subspace().reconstruct(q); }, as_it_is, full ? Progress() : progress);
-  });
-  if (full)
-    result = with_force_model(reduced.body, [&]<typename Model>(const std::shared_ptr<const Model>& force) {
-      const FullSystem<Model> system(force, nodal_mass(reduced.body), fixed_nodes(reduced.body));
-      // each solve begins where the reduced model says that the handles lead
-      const auto led = [&](Index k, const Vector& state) -> Vector {
-        const Vector way = (result.states.row(k + 1) - result.states.row(k)).transpose();
-        return state + std::visit([&](const auto& basis) { return system.restrict(basis->reconstruct(way)); },
-                                  reduced.subspace);
-      };
-      const auto expand = [&](VectorIn u) -> Vector { return system.expand(u); };
-      return run_edits(system, rest, handles, path, options, expand, expand, led, progress);
-    });
+  StaticOptions reduced_options = options;
+  if (full) reduced_options.solver = Newton{};
+  EditRun result = run_edits(
+      reduced.system(), rest, handles, path, reduced_options, [](VectorIn q) -> Vector { return q; }, as_it_is,
+      full ? Progress() : progress);
+  if (full) {
+    const AnySystem<SparseMatrix> system = full_system(reduced.body);
+    const NodeNumbering numbering(num_nodes(reduced.body), fixed_nodes(reduced.body));
+    // each solve begins where the reduced model says that the handles lead
+    const auto led = [&](Index k, const Vector& state) -> Vector {
+      const Vector way = (result.states.row(k + 1) - result.states.row(k)).transpose();
+      return state + numbering.restrict(
+                         std::visit([&](const auto& basis) { return basis->reconstruct(way); }, reduced.subspace), 3);
+    };
+    result = run_edits(
+        system, rest, handles, path, options, [&](VectorIn u) { return system.expand(u); }, led, progress);
+  }
   times.finish("edits");
   const Index frames_count = result.states.rows();
   double reconstruction = 0;
@@ -176,7 +169,7 @@ void EditCommand::run() const {
   report["scene"] = scene.string();
   report["description"] = edits.description;
   report["system"] = full ? "full" : "reduced";
-  report["solver"] = to_text(options.method);
+  report["solver"] = name_of_solver(static_solvers, options.solver);
   report["tolerance"] = options.tolerance;
   report["handles"] = Json::array();
   for (std::size_t h = 0; h < handles.size(); ++h)
@@ -197,13 +190,14 @@ void EditCommand::run() const {
   report["peak_memory"] = peak_resident_memory();
   if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) {
-    Rows rows{{"scene", edits.description},
-              {"system", full ? "full" : "reduced, dimension " + std::to_string(reduced.dim())},
-              {"solves", std::to_string(result.solves.size()) + " by " + to_text(options.method) + ", " +
-                             shown(report["mean_iterations"].get<double>(), 3) + " iterations each, median " +
-                             shown(1e3 * median, 3) + " ms"},
-              {"residual", "at most " + shown(worst, 2) + ", asked for " + shown(options.tolerance)},
-              {"energy", shown(last.elastic) + " J elastic, " + shown(last.control) + " J of the handles"}};
+    Rows rows{
+        {"scene", edits.description},
+        {"system", full ? "full" : "reduced, dimension " + std::to_string(reduced.dim())},
+        {"solves", std::to_string(result.solves.size()) + " by " + name_of_solver(static_solvers, options.solver) +
+                       ", " + shown(report["mean_iterations"].get<double>(), 3) + " iterations each, median " +
+                       shown(1e3 * median, 3) + " ms"},
+        {"residual", "at most " + shown(worst, 2) + ", asked for " + shown(options.tolerance)},
+        {"energy", shown(last.elastic) + " J elastic, " + shown(last.control) + " J of the handles"}};
     if (reconstruction > 0)
       rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(frames_count), 3) +
                                               " ms a frame of all nodes");

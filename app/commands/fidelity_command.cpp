@@ -7,9 +7,12 @@
 #include <core/check.hpp>
 #include <core/output_file.hpp>
 #include <core/parallel.hpp>
+#include <core/peak_memory.hpp>
 #include <core/stopwatch.hpp>
 #include <core/version.hpp>
 #include <physics/body/force_models.hpp>
+#include <physics/system/any_system.hpp>
+#include <reduction/basis/subspace_library.hpp>
 #include <reduction/editing/editor.hpp>
 #include <reduction/pipeline/reduce.hpp>
 #include <reduction/system/galerkin_system.hpp>
@@ -44,24 +47,24 @@ struct Shape {
   double energy() const { return elastic + control; }
 };
 
-template <typename System, typename Displacement>
+template <ObjectSystem System>
 void solve_path(const System& system, const Points& rest, const std::vector<Handle>& handles,
                 const std::vector<std::vector<RigidMotion>>& path, const Vector& start, const StaticOptions& options,
-                const Displacement& displacement, const Progress& progress, Shape& shape) {
+                const Progress& progress, Shape& shape) {
   const Stopwatch watch;
   Editor editor(system, rest, options);
   for (const Handle& handle : handles) (void)editor.add(handle);
   editor.start_from(start);
   for (std::size_t k = 0; k < path.size(); ++k) {
     for (std::size_t h = 0; h < handles.size(); ++h) editor.move(static_cast<Index>(h), path[k][h]);
-    const StaticReport report = editor.solve();
+    const SolveReport report = editor.solve();
     if (report.status == Status::NotFinite)
       throw SolverError(shape.name + ": solve " + std::to_string(k + 1) + " is not finite; more increments may help");
     ++shape.solves;
     shape.missed += report.status != Status::Converged;
     tell(progress, shape.name, static_cast<double>(k + 1) / static_cast<double>(path.size()));
   }
-  shape.displacement = displacement(editor.state());
+  shape.displacement = system.expand(editor.state());
   shape.elastic = editor.elastic_energy();
   shape.control = editor.control_energy(shape.displacement);
   shape.solve_seconds = watch.seconds();
@@ -123,7 +126,6 @@ std::vector<Shape> shapes_of(const Body& body, const EditScene& edits, const Red
   shapes[0].name = "full";
   with_force_model(body, [&]<typename Model>(const std::shared_ptr<const Model>& force) {
     const auto system = std::make_shared<const FullSystem<Model>>(force, nodal_mass(body), fixed_nodes(body));
-    const auto quiet = [](const std::string&, auto&& work) { return work([](double) {}); };
     std::vector<Handle> handles;
     std::vector<std::vector<RigidMotion>> path;
     Index d = options.dimension;
@@ -132,7 +134,7 @@ std::vector<Shape> shapes_of(const Body& body, const EditScene& edits, const Red
       choice.name = name;
       choice.dimension = parts_of_subspace(name).size() == 1 ? d : 0;  // a sum has what its parts have
       if (name == "derivatives") choice.modes = modes_to_differentiate(choice.modes, d);
-      with_subspace(*system, choice, progress, quiet, visit);
+      std::visit(visit, build_subspace(system->rest_state(), choice, {.progress = progress}));
     };
     // the extended basis first: it sets the dimension and the handles
     std::vector<std::string> order{"extended"};
@@ -153,9 +155,7 @@ std::vector<Shape> shapes_of(const Body& body, const EditScene& edits, const Red
           handles = make_handles(edits, spectrum.softest_stiffness(), system->nodal_mass().sum());
           path = handle_paths(edits, handles, rest);
         }
-        solve_path(
-            reduced, rest, handles, path, Vector::Zero(shape.dimension), solver,
-            [&](VectorIn q) -> Vector { return space->reconstruct(q); }, progress, shape);
+        solve_path(reduced, rest, handles, path, Vector::Zero(shape.dimension), solver, progress, shape);
         shapes.push_back(std::move(shape));
       });
     }
@@ -169,9 +169,7 @@ std::vector<Shape> shapes_of(const Body& body, const EditScene& edits, const Red
       shape.dimension = system->dim();
       shape.led_by = shapes[k].name;
       try {
-        solve_path(
-            *system, rest, handles, last, system->restrict(shapes[k].displacement), solver,
-            [&](VectorIn u) -> Vector { return system->expand(u); }, progress, shape);
+        solve_path(*system, rest, handles, last, system->restrict(shapes[k].displacement), solver, progress, shape);
       } catch (const SolverError&) {
         if (k + 1 == shapes.size() && shapes[0].led_by.empty()) throw;
         continue;  // a shape from which nothing can be found, such as one with collapsed elements

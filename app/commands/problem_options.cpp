@@ -5,7 +5,7 @@
 #include <io/text/json_fields.hpp>
 #include <physics/body/force_models.hpp>
 #include <physics/body/material_law.hpp>
-#include <reduction/basis/named_subspace.hpp>
+#include <reduction/basis/subspace_library.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -135,17 +135,6 @@ double shell_thickness(const ProblemOptions& problem, const TriangleMesh& mesh) 
   return option_quantity("--thickness", text, "1") * bounding_box(mesh.nodes).diagonal();
 }
 
-InvertedPoses inverted_poses(const std::string& word) {
-  return word == "keep" ? InvertedPoses::Keep : word == "shrink" ? InvertedPoses::Shrink : InvertedPoses::Redraw;
-}
-
-const char* to_text(ForceNorm norm) {
-  return norm == ForceNorm::Mass ? "mass" : "stiffness";
-}
-const char* to_text(InvertedPoses rule) {
-  return rule == InvertedPoses::Keep ? "keep" : rule == InvertedPoses::Shrink ? "shrink" : "redraw";
-}
-
 }  // namespace
 
 Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
@@ -210,9 +199,10 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
   if (problem.equilibria) options.equilibria = *problem.equilibria;
   if (problem.omega_exponent) options.poses.omega_exponent = *problem.omega_exponent;
   if (!problem.amplitudes.empty()) options.poses.amplitudes = problem.amplitudes;
-  if (problem.norm) options.norm = *problem.norm == "mass" ? ForceNorm::Mass : ForceNorm::Stiffness;
-  options.poses.inverted =
-      inverted_rule(law(body), problem.inverted ? std::optional(inverted_poses(*problem.inverted)) : std::nullopt);
+  if (problem.norm) options.norm = value_named<ForceNorm>(*problem.norm, "norm");
+  options.poses.inverted = inverted_rule(
+      law(body),
+      problem.inverted ? std::optional(value_named<InvertedPoses>(*problem.inverted, "inverted")) : std::nullopt);
   if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, named.nodes());
   return options;
 }
@@ -237,10 +227,10 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, c
             {"modes", options.modes},
             {"dimension", options.dimension},
             {"poses", options.poses.count},
-            {"norm", to_text(options.norm)},
+            {"norm", name_of(options.norm)},
             {"omega_exponent", options.poses.omega_exponent},
             {"amplitudes", options.poses.amplitudes},
-            {"inverted", to_text(*options.poses.inverted)},
+            {"inverted", name_of(*options.poses.inverted)},
             {"held_out", options.held_out_poses},
             {"equilibria", num_equilibria(body, options)},
             {"seed", options.seed},

@@ -5,6 +5,7 @@
 #include <app/report/terminal.hpp>
 #include <app/scene/surface.hpp>
 #include <core/parallel.hpp>
+#include <core/peak_memory.hpp>
 #include <core/stopwatch.hpp>
 #include <core/version.hpp>
 #include <io/picture/plot.hpp>

@@ -3,6 +3,7 @@
 #include <app/report/terminal.hpp>
 #include <core/check.hpp>
 #include <core/parallel.hpp>
+#include <core/peak_memory.hpp>
 #include <core/stopwatch.hpp>
 #include <core/version.hpp>
 #include <io/table/matrix_file.hpp>

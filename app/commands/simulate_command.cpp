@@ -4,9 +4,11 @@
 #include <app/report/terminal.hpp>
 #include <app/scene/frames.hpp>
 #include <app/scene/simulation.hpp>
+#include <app/scene/solver_names.hpp>
 #include <app/scene/surface.hpp>
 #include <app/scene/trajectory.hpp>
 #include <core/parallel.hpp>
+#include <core/peak_memory.hpp>
 #include <core/stopwatch.hpp>
 #include <core/version.hpp>
 #include <io/frames/vtu_writer.hpp>
@@ -31,7 +33,7 @@ RowPrecision default_precision(const ReducedModel& model) {
 SimulationOptions decide(const SimulateCommand& command, const ReducedModel& model, Scene& scene) {
   if (command.time) scene.duration = option_quantity("--time", *command.time, "s");
   if (command.step) scene.step = option_quantity("--step", *command.step, "s");
-  if (command.solver) scene.solver = solver_named(*command.solver);
+  if (command.solver) scene.solver = solver_named(step_solvers, *command.solver);
   if (command.tolerance) scene.tolerance = *command.tolerance;
   if (command.every) scene.every = *command.every;
   if (!command.track.empty()) scene.track = command.track;
@@ -50,25 +52,24 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
   const double steps = std::max(1.0, std::ceil(*scene.duration / *scene.step - 1e-6));
   if (steps > 1e8) throw InputError(shown(steps) + " steps are more than the 1e8 that a run may have");
 
-  SimulationOptions options{.step = *scene.step, .num_steps = static_cast<Index>(steps), .every = 1, .newmark = {}};
+  SimulationOptions options{.step = *scene.step, .num_steps = static_cast<Index>(steps)};
   options.every = scene.every.value_or((options.num_steps + 99) / 100);
   if (options.every < 1) throw InputError("--every is " + std::to_string(options.every) + ", expected at least 1");
-  options.newmark.damping = scene.damping.value_or(damping(model.body));
-  options.newmark.solver = scene.solver.value_or(command.full ? NonlinearSolver::Newton : NonlinearSolver::Bfgs);
-  if (command.full && options.newmark.solver != NonlinearSolver::Newton) {
+  if (command.integrator) scene.integrator = Choice::parse(*command.integrator);
+  if (scene.integrator) options.integrator = *scene.integrator;
+  options.steps.damping = scene.damping.value_or(damping(model.body));
+  options.steps.solver = scene.solver.value_or(command.full ? NonlinearSolver(Newton{}) : NonlinearSolver(Bfgs{}));
+  if (command.full && !std::holds_alternative<Newton>(options.steps.solver)) {
     if (command.solver)
       throw InputError("--solver " + *command.solver + " is for reduced systems; --full runs with newton");
-    options.newmark.solver = NonlinearSolver::Newton;
+    options.steps.solver = Newton{};
   }
-  if (scene.tolerance) options.newmark.tolerance = *scene.tolerance;
-  if (scene.max_iterations) options.newmark.max_iterations = *scene.max_iterations;
-  if (scene.beta) options.newmark.beta = *scene.beta;
-  if (scene.gamma) options.newmark.gamma = *scene.gamma;
+  if (scene.tolerance) options.steps.tolerance = *scene.tolerance;
+  if (scene.max_iterations) options.steps.max_iterations = *scene.max_iterations;
   if (command.full && command.precision) throw InputError("--precision is for reduced systems, not for --full");
   if (!command.full) {
     options.precision = default_precision(model);
-    if (command.precision)
-      options.precision = *command.precision == "single" ? RowPrecision::Single : RowPrecision::Double;
+    if (command.precision) options.precision = value_named<RowPrecision>(*command.precision, "precision");
   }
   return options;
 }
@@ -171,9 +172,11 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["duration"] = run.steps[run.finite() ? run.num_steps() : run.num_steps() - 1].time;
   json["step"] = options.step;
   json["steps"] = run.num_steps();
-  json["solver"] = name_of(options.newmark.solver);
-  json["tolerance"] = options.newmark.tolerance;
-  if (!command.full) json["precision"] = options.precision == RowPrecision::Single ? "single" : "double";
+  json["integrator"] = options.integrator.name;
+  for (const auto& [option, value] : options.integrator.options) json["integrator_options"][option] = value;
+  json["solver"] = name_of_solver(step_solvers, options.steps.solver);
+  json["tolerance"] = options.steps.tolerance;
+  if (!command.full) json["precision"] = name_of(options.precision);
   json["steps_per_second"] = effort.steps_per_second;
   json["mean_iterations"] = effort.mean_iterations;
   json["most_iterations"] = effort.most_iterations;
@@ -200,7 +203,7 @@ void print_summary(const SimulateCommand& command, const Scene& scene, const Sim
                     " times real time"},
       {"iterations", shown(effort.mean_iterations, 3) + " a step, " + std::to_string(effort.most_iterations) +
                          " at most; " + shown_count(effort.refreshes) + " tangents"},
-      {"residual", "at most " + shown(effort.worst_residual, 2) + ", asked for " + shown(options.newmark.tolerance)}};
+      {"residual", "at most " + shown(effort.worst_residual, 2) + ", asked for " + shown(options.steps.tolerance)}};
   if (reconstruction > 0)
     rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(run.times.size()), 3) +
                                             " ms a frame of all nodes");
@@ -265,7 +268,7 @@ void SimulateCommand::run() const {
                       " s) is not finite; the results end before it. A shorter --step or --solver newton may help");
   if (effort.missed > 0)
     warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) + " steps missed the tolerance " +
-         shown(options.newmark.tolerance) + " (worst residual " + shown(effort.worst_residual, 2) +
+         shown(options.steps.tolerance) + " (worst residual " + shown(effort.worst_residual, 2) +
          "); try a shorter --step or --solver newton");
 }
 

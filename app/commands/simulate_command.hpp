@@ -15,7 +15,7 @@ struct SimulateCommand {
   std::optional<std::filesystem::path> scene;  ///< none: pluck_scene
   bool full = false;                           ///< the unreduced system
   std::optional<std::string> time, step;
-  std::optional<std::string> solver;
+  std::optional<std::string> integrator, solver;
   std::optional<double> tolerance;
   std::optional<std::string> precision;  ///< double or single; see default_precision()
   std::optional<Index> every;

@@ -1,4 +1,5 @@
 #include <app/scene/edit_scene.hpp>
+#include <app/scene/solver_names.hpp>
 #include <core/check.hpp>
 #include <io/mesh/node_sets.hpp>
 #include <io/text/json_fields.hpp>
@@ -89,12 +90,8 @@ EditScene read_edit_scene(const std::filesystem::path& path, const Body& body) {
   }
   if (scene.edits.empty()) file.fail("edits", "is empty, expected at least one edit");
   if (const auto solver = file.object_if("solver")) {
-    if (solver->contains("method")) {
-      const std::string method = solver->choice("method", {"newton", "bfgs", "nlopt"});
-      scene.method = method == "newton" ? StaticMethod::Newton
-                     : method == "bfgs" ? StaticMethod::Bfgs
-                                        : StaticMethod::Nlopt;
-    }
+    if (solver->contains("method"))
+      scene.solver = solver_named(static_solvers, solver->choice("method", {"newton", "bfgs", "nlopt"}));
     if (solver->contains("tolerance")) scene.tolerance = solver->number("tolerance", positive);
     if (solver->contains("max_iterations")) scene.max_iterations = solver->integer("max_iterations", at_least(1));
   }

@@ -1,8 +1,8 @@
 #pragma once
 /// \file Scripted edits: handles on an object and their motions, from a JSON file; see docs/edit-scene.md.
 
+#include <numerics/optimize/warm_solver.hpp>
 #include <physics/body/body.hpp>
-#include <physics/statics/static_solver.hpp>
 #include <reduction/editing/handles.hpp>
 
 #include <filesystem>
@@ -30,7 +30,7 @@ struct EditScene {
   std::string description;
   std::vector<HandleRegion> handles;
   std::vector<Edit> edits;
-  std::optional<StaticMethod> method;
+  std::optional<NonlinearSolver> solver;
   std::optional<double> tolerance;
   std::optional<Index> max_iterations;
   std::uint64_t seed = 1;  ///< of the samples

@@ -1,7 +1,14 @@
 #include <app/scene/scene.hpp>
+#include <app/scene/solver_names.hpp>
+#include <app/scene/surface.hpp>
 #include <core/check.hpp>
 #include <io/mesh/node_sets.hpp>
+#include <io/table/csv.hpp>
 #include <io/text/json_fields.hpp>
+#include <physics/load/outside_force_library.hpp>
+#include <physics/time/integrator_library.hpp>
+
+#include <numeric>
 
 namespace supple {
 
@@ -64,6 +71,27 @@ std::vector<std::pair<Index, double>> read_nodes(const JsonFields& fields, const
   return shares;
 }
 
+/// An option of a registry's entry, as text.
+std::string read_option(const JsonFields& fields, const OptionInfo& option) {
+  switch (option.type) {
+    case OptionType::WholeNumber:
+      return std::to_string(fields.integer(option.name));
+    case OptionType::Number:
+      return exact(fields.number(option.name));
+    case OptionType::Flag:
+      return fields.flag(option.name) ? "yes" : "no";
+    case OptionType::Word:
+      return fields.text(option.name);
+  }
+  return "";
+}
+
+std::vector<Index> all_nodes(Index n) {
+  std::vector<Index> nodes(static_cast<std::size_t>(n));
+  std::iota(nodes.begin(), nodes.end(), Index{0});
+  return nodes;
+}
+
 TimedSprings read_springs(const JsonFields& fields, const Body& body) {
   TimedSprings result;
   const double stiffness = fields.number("stiffness", positive, "N/m");
@@ -94,17 +122,51 @@ TimedSprings read_springs(const JsonFields& fields, const Body& body) {
   return result;
 }
 
+/// An entry of a registry and its options, from an object that names it by `key`.
+template <typename Entry>
+Choice read_choice(const JsonFields& fields, std::string_view key, const Registry<Entry>& registry) {
+  Choice choice{fields.text(key)};
+  if (!registry.contains(choice.name)) {
+    std::string known;
+    for (const std::string& name : registry.names()) known += (known.empty() ? "" : ", ") + name;
+    fields.fail(key, "is '" + choice.name + "', expected one of " + known);
+  }
+  for (const OptionInfo& option : registry.at(choice.name).options)
+    if (fields.contains(option.name)) choice.options.emplace_back(option.name, read_option(fields, option));
+  return choice;
+}
+
+/// The nodes that a force from outside may touch: all, or those of a rule; with the surface between them.
+AnyOutsideForce read_outside_force(const JsonFields& fields, const Body& body) {
+  const Choice choice = read_choice(fields, "force", outside_forces());
+  TouchedNodes where{node_positions(body), {}, {}, {}};
+  if (fields.contains("nodes")) {
+    for (const auto& [node, share] : read_nodes(fields, body)) where.nodes.push_back(node);
+  } else {
+    where.nodes = all_nodes(num_nodes(body));
+  }
+  const Vector mass = nodal_mass(body);
+  where.shares.resize(static_cast<Index>(where.nodes.size()));
+  std::vector<char> touched(static_cast<std::size_t>(mass.size()), false);
+  for (std::size_t k = 0; k < where.nodes.size(); ++k) {
+    where.shares[static_cast<Index>(k)] = mass[where.nodes[k]];
+    touched[static_cast<std::size_t>(where.nodes[k])] = true;
+  }
+  where.shares /= where.shares.sum();
+  const Surface surface(body);
+  for (const Triangle& triangle : surface.triangles) {
+    const std::array<Index, 3> corners{surface.nodes[triangle[0]], surface.nodes[triangle[1]],
+                                       surface.nodes[triangle[2]]};
+    if (touched[corners[0]] && touched[corners[1]] && touched[corners[2]]) where.triangles.push_back(corners);
+  }
+  try {
+    return outside_forces().at(choice.name).make(where, choice.options);
+  } catch (const std::invalid_argument& error) {
+    fields.fail("force", "is refused: " + std::string(error.what()));
+  }
+}
+
 }  // namespace
-
-std::string_view name_of(NonlinearSolver solver) {
-  return solver == NonlinearSolver::Newton ? "newton" : solver == NonlinearSolver::Bfgs ? "bfgs" : "broyden";
-}
-
-NonlinearSolver solver_named(std::string_view name) {
-  for (const NonlinearSolver solver : {NonlinearSolver::Newton, NonlinearSolver::Bfgs, NonlinearSolver::Broyden})
-    if (name == name_of(solver)) return solver;
-  throw std::invalid_argument("there is no solver '" + std::string(name) + "', expected newton, bfgs or broyden");
-}
 
 Scene read_scene(const std::filesystem::path& path, const Body& body) {
   const JsonFields file = JsonFields::read(path);
@@ -126,17 +188,29 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
   }
   for (const JsonFields& fields : file.objects_if("springs")) scene.springs.push_back(read_springs(fields, body));
 
+  for (const JsonFields& fields : file.objects_if("outside")) {
+    TimeSpan when;
+    when.from = fields.number_or("from", when.from, any_number, "s");
+    when.until = fields.number_or("until", when.until, any_number, "s");
+    if (when.until < when.from) fields.fail("until", "is before 'from'");
+    scene.others.push_back({read_outside_force(fields, body), when});
+  }
+
   if (const auto damping = file.object_if("damping"))
     scene.damping = {damping->number_or("alpha", 0, non_negative, "1/s"),
                      damping->number_or("beta", 0, non_negative, "s")};
   if (const auto solver = file.object_if("solver")) {
     if (solver->contains("method"))
-      scene.solver = solver_named(solver->choice("method", {"newton", "bfgs", "broyden"}));
+      scene.solver = solver_named(step_solvers, solver->choice("method", {"newton", "bfgs", "broyden"}));
     if (solver->contains("tolerance")) scene.tolerance = solver->number("tolerance", positive);
     if (solver->contains("max_iterations")) scene.max_iterations = solver->integer("max_iterations", at_least(1));
-    if (solver->contains("beta")) scene.beta = solver->number("beta", positive);
-    if (solver->contains("gamma")) scene.gamma = solver->number("gamma", positive);
+    for (const std::string_view moved : {"beta", "gamma"})
+      if (solver->contains(moved))
+        solver->fail(moved, "belongs to the integrator: \"integrator\": {\"method\": \"newmark\", \"" +
+                                std::string(moved) + "\": ...}");
   }
+  if (const auto integrator = file.object_if("integrator"))
+    scene.integrator = read_choice(*integrator, "method", integrators());
   if (const auto output = file.object_if("output")) {
     if (output->contains("every")) scene.every = output->integer("every", at_least(1));
     if (output->contains("track"))

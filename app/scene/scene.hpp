@@ -1,9 +1,11 @@
 #pragma once
 /// \file What happens to an object: loads and springs over time, from a JSON file; see docs/scene.md.
 
+#include <core/registry.hpp>
 #include <core/types.hpp>
+#include <numerics/optimize/warm_solver.hpp>
 #include <physics/load/loads.hpp>
-#include <physics/time/newmark.hpp>
+#include <physics/system/damping.hpp>
 #include <reduction/pipeline/reduced_model.hpp>
 
 #include <filesystem>
@@ -41,22 +43,25 @@ struct TimedSprings {
   Point displacement(double t) const;
 };
 
+/// Another force from outside, while it acts.
+struct TimedForce {
+  AnyOutsideForce force;
+  TimeSpan when;  ///< without ramp
+};
+
 struct Scene {
   std::optional<double> duration, step;  ///< [s]
   std::vector<TimedLoads> loads;
   std::vector<TimedSprings> springs;
+  std::vector<TimedForce> others;
   std::optional<RayleighDamping> damping;
+  std::optional<Choice> integrator;  ///< one of integrators()
   std::optional<NonlinearSolver> solver;
-  std::optional<double> tolerance, beta, gamma;
+  std::optional<double> tolerance;
   std::optional<Index> max_iterations, every;
   std::vector<Index> track;  ///< nodes
   std::string description;   ///< in a line
 };
-
-/// "newton", "bfgs", "broyden".
-std::string_view name_of(NonlinearSolver solver);
-/// \param name  one of these.
-NonlinearSolver solver_named(std::string_view name);
 
 /// \throws InputError naming file, place and what was expected there; unknown keys are refused.
 Scene read_scene(const std::filesystem::path& path, const Body& body);

@@ -3,6 +3,7 @@
 
 #include <app/scene/scene.hpp>
 #include <core/progress.hpp>
+#include <physics/time/implicit_step.hpp>
 #include <reduction/pipeline/reduced_model.hpp>
 
 #include <vector>
@@ -12,8 +13,9 @@ namespace supple {
 struct SimulationOptions {
   double step = 0;  ///< [s]
   Index num_steps = 0;
-  Index every = 1;  ///< a frame after so many steps
-  NewmarkOptions newmark;
+  Index every = 1;               ///< a frame after so many steps
+  Choice integrator{"newmark"};  ///< one of integrators()
+  StepOptions steps;
   RowPrecision precision = RowPrecision::Double;  ///< of a reduced system
 };
 
@@ -22,7 +24,7 @@ struct StepRecord {
   double time = 0;                            ///< [s]
   double kinetic = 0, elastic = 0, work = 0;  ///< energies, and the work of loads and springs so far [J]
   Index iterations = 0, refreshes = 0;
-  double residual = 0;  ///< relative, see NewmarkOptions::tolerance
+  double residual = 0;  ///< relative, see StepOptions::tolerance
   Status status = Status::Converged;
 };
 

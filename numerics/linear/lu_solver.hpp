@@ -2,6 +2,7 @@
 /// \file One face for solves with matrices that need not be symmetric, sparse or dense.
 
 #include <core/check.hpp>
+#include <numerics/linear/matrix_sums.hpp>
 #include <numerics/linear/umfpack_solver.hpp>
 
 #include <Eigen/LU>

@@ -37,49 +37,37 @@ class BroydenMemory {
   std::vector<double> squared_norms_;
 };
 
-struct QuasiNewtonOptions {
-  double tolerance = 1e-6;    ///< relative residual ‖g‖ / scale to reach
-  Index max_iterations = 60;  ///< steps, each of one evaluation of the force, more where the Jacobian is refreshed
-  /// The Jacobian is computed afresh when convergence so far predicts more than this many further iterations.
-  /// About the cost of a tangent and its factorisation in evaluations of the force; lower it for violent
-  /// motions.
-  double refresh_cost = 20;
-};
-
-struct QuasiNewtonReport : Report {
-  Index refreshes = 0;  ///< Newton steps, each of which left a new Jacobian in the solver
-};
-
 /// Solves g(u) = 0 by full quasi-Newton steps. `solver` holds B₀; if convergence is too slow, a Newton step with
 /// line search replaces it, clears the memory, and the solver keeps the new one for later calls.
-/// \param memory  a BroydenMemory that is empty, or a BfgsMemory, which may know steps of similar problems.
+/// \param memory        a BroydenMemory that is empty, or a BfgsMemory, which may know steps of similar problems.
+/// \param refresh_cost  see Bfgs.
 template <SmoothObjective O, typename Memory>
-QuasiNewtonReport quasi_newton_solve(O& objective, SpdSolver<typename O::MatrixType>& solver, Memory& memory, Vector& u,
-                                     const QuasiNewtonOptions& options = {}) {
-  QuasiNewtonReport report;
+SolveReport quasi_newton_solve(O& objective, SpdSolver<typename O::MatrixType>& solver, Memory& memory, Vector& u,
+                               const SolveLimits& limits = {}, double refresh_cost = 20) {
+  SolveReport report;
   Vector g(u.size()), g_trial(u.size());
   objective.gradient(u, g);
-  detail::ShiftedHessian<typename O::MatrixType> hessian;
+  ShiftedHessian<typename O::MatrixType> hessian;
   // Progress is judged by ‖g‖ itself: far away the scale grows as fast, and ‖g‖ / scale tells nothing.
   double norm = g.norm(), first_norm = norm, scale = objective.scale(u);
   double taken = 0;  // steps since the last refresh
   for (;;) {
-    report.residual = detail::relative(norm, scale);
+    report.residual = relative_residual(norm, scale);
     if (!std::isfinite(report.residual)) return report.status = Status::NotFinite, report;
-    if (report.residual <= options.tolerance) return report.status = Status::Converged, report;
-    if (report.iterations >= options.max_iterations) return report.status = Status::MaxIterations, report;
+    if (report.residual <= limits.tolerance) return report.status = Status::Converged, report;
+    if (report.iterations >= limits.max_iterations) return report.status = Status::MaxIterations, report;
     ++report.iterations;
 
     Vector step = -memory.inverse_times(solver, g);
     const Vector trial = u + step;
     objective.gradient(trial, g_trial);
     const double trial_norm = g_trial.norm(), trial_scale = objective.scale(trial);
-    const double target = options.tolerance * trial_scale;
+    const double target = limits.tolerance * trial_scale;
 
     ++taken;
     const double rate = std::log(trial_norm / first_norm) / taken;  // of the logarithm of ‖g‖, per iteration
-    const bool slow = !(trial_norm < 2 * norm) ||
-                      (taken >= 2 && !(std::log(target / trial_norm) / rate <= options.refresh_cost && rate < 0));
+    const bool slow =
+        !(trial_norm < 2 * norm) || (taken >= 2 && !(std::log(target / trial_norm) / rate <= refresh_cost && rate < 0));
     if (!slow || trial_norm <= target) {
       memory.add(std::move(step), g_trial - g);
       u = trial;
@@ -92,18 +80,47 @@ QuasiNewtonReport quasi_newton_solve(O& objective, SpdSolver<typename O::MatrixT
       u = trial;
       g = g_trial;
     }
-    const bool decreased = detail::newton_step(objective, solver, hessian, u, g);
+    const bool decreased = newton_step(objective, solver, hessian, u, g);
     memory.clear();
     objective.gradient(u, g);
     norm = first_norm = g.norm();
     scale = objective.scale(u);
     if (!decreased) {
-      report.residual = detail::relative(norm, scale);
+      report.residual = relative_residual(norm, scale);
       return report.status = Status::Stagnated, report;
     }
-    ++report.refreshes;
+    ++report.tangents;
     taken = 0;
   }
 }
+
+/// Quasi-Newton steps by the BFGS formula from a Jacobian that is near, which learn from one solve to the next: the
+/// fastest for time steps of reduced systems.
+struct Bfgs {
+  /// The Jacobian is computed afresh when convergence so far predicts more than this many further iterations.
+  /// About the cost of a tangent and its factorisation in evaluations of the force; lower it for violent
+  /// motions.
+  double refresh_cost = 20;
+  Index memory = 60;  ///< steps kept; more help little and take longer than they save
+
+  /// \see quasi_newton_solve
+  template <SmoothObjective O>
+  SolveReport operator()(O& objective, SpdSolver<typename O::MatrixType>& solver, BfgsMemory& steps, Vector& u,
+                         const SolveLimits& limits = {}) const {
+    return quasi_newton_solve(objective, solver, steps, u, limits, refresh_cost);
+  }
+};
+
+/// Quasi-Newton steps by Broyden's formula, which begins each solve anew (the paper's choice for reduced systems).
+struct Broyden {
+  double refresh_cost = 20;  ///< as of Bfgs
+
+  template <SmoothObjective O>
+  SolveReport operator()(O& objective, SpdSolver<typename O::MatrixType>& solver, Vector& u,
+                         const SolveLimits& limits = {}) const {
+    BroydenMemory memory;
+    return quasi_newton_solve(objective, solver, memory, u, limits, refresh_cost);
+  }
+};
 
 }  // namespace supple

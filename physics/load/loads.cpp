@@ -1,6 +1,7 @@
 #include <core/check.hpp>
 #include <physics/load/loads.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace supple {
@@ -23,6 +24,14 @@ void check_loads(const Loads& loads, Index num_nodes) {
         std::isfinite(spring.stiffness) && spring.stiffness > 0,
         "spring " + std::to_string(k) + " has stiffness " + std::to_string(spring.stiffness) + " N/m, expected > 0");
     require(spring.displacement.allFinite(), "spring " + std::to_string(k) + " has a target that is not finite");
+  }
+  for (std::size_t k = 0; k < loads.others.size(); ++k) {
+    const std::span<const Index> nodes = loads.others[k].nodes();
+    std::vector<Index> sorted(nodes.begin(), nodes.end());
+    std::ranges::sort(sorted);
+    for (const Index node : sorted) check_node("outside force", k, node);
+    const auto twice = std::ranges::adjacent_find(sorted);
+    require(twice == sorted.end(), "outside force " + std::to_string(k) + " touches a node twice");
   }
 }
 

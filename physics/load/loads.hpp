@@ -1,7 +1,8 @@
 #pragma once
-/// \file External loads, given on nodes and projected to the unknowns of a system.
+/// \file What acts on an object from outside, given on its nodes.
 
 #include <core/types.hpp>
+#include <physics/load/outside_force.hpp>
 
 #include <vector>
 
@@ -19,24 +20,17 @@ struct PointSpring {
   Point displacement;  ///< u* = target − rest position of the node [m]
 };
 
-/// What acts on an object at one moment.
+/// What acts on an object at one moment. Gravity, forces and springs are affine in the displacements and projected to
+/// the unknowns of a system once; others are evaluated wherever the system is.
 struct Loads {
   Point gravity = Point::Zero();  ///< acceleration [m/s²]
   std::vector<NodalForce> forces = {};
   std::vector<PointSpring> springs = {};
+  std::vector<AnyOutsideForce> others = {};
 };
 
-/// Loads in the unknowns of a system: f_ext(u) = force − stiffness u. An empty stiffness stands for zero.
-template <typename MatrixType>
-struct AffineLoad {
-  Vector force;
-  MatrixType stiffness;
-
-  bool has_stiffness() const { return stiffness.size() > 0; }
-};
-
-/// Throws std::invalid_argument if a load names a node outside 0 … num_nodes − 1 or is not finite, or a
-/// spring is not positive.
+/// Throws std::invalid_argument if a load names a node outside 0 … num_nodes − 1 or is not finite, a spring is not
+/// positive, or another force touches a node twice.
 void check_loads(const Loads& loads, Index num_nodes);
 
 }  // namespace supple

@@ -4,6 +4,7 @@
 
 #include <core/types.hpp>
 #include <physics/load/loads.hpp>
+#include <physics/load/system_load.hpp>
 #include <physics/model/force_model.hpp>
 
 #include <concepts>
@@ -31,7 +32,7 @@ template <typename S>
 concept DynamicalSystem = SemidiscreteSystem<S> && has_symmetric_tangent<S>() &&
     requires(const S& system, VectorIn u, const Loads& loads) {
   { system.energy(u) } -> std::convertible_to<double>;                            // E [J]
-  { system.project(loads) } -> std::same_as<AffineLoad<typename S::MatrixType>>;  // loads on nodes → on unknowns
+  { system.project(loads) } -> std::same_as<SystemLoad<typename S::MatrixType>>;  // loads on nodes → on unknowns
 };
 
 }  // namespace supple

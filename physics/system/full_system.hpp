@@ -8,6 +8,8 @@
 #include <physics/model/term_pack.hpp>
 #include <physics/system/dynamical_system.hpp>
 #include <physics/system/node_numbering.hpp>
+#include <physics/system/outside_terms.hpp>
+#include <physics/system/rest_state.hpp>
 
 #include <memory>
 #include <vector>
@@ -158,11 +160,22 @@ class FullSystem {
   }
   const SparseMatrix& rest_stiffness() const { return rest_stiffness_; }
 
+  /// What subspaces are made from. Refers to this system.
+  RestState rest_state() const {
+    static const Points unknown(0, 3);
+    const Points* positions = &unknown;
+    if constexpr (requires { model_->rest_positions(); }) positions = &model_->rest_positions();
+    return {rest_stiffness_,     mass_,      nodal_mass_,
+            *positions,          numbering_, stencils_,
+            Model::stencil_size, node_dim,   [this](VectorIn u, VectorOut f) { force(u, f); }};
+  }
+  operator RestState() const { return rest_state(); }
+
   /// Forces on all nodes, n · node_dim → on the unknowns.
-  AffineLoad<SparseMatrix> project(VectorIn nodal_forces) const { return {restrict(nodal_forces), {}}; }
-  AffineLoad<SparseMatrix> project(const Loads& loads) const requires(node_dim == 3) {
+  SystemLoad<SparseMatrix> project(VectorIn nodal_forces) const { return {restrict(nodal_forces), {}}; }
+  SystemLoad<SparseMatrix> project(const Loads& loads) const requires(node_dim == 3) {
     check_loads(loads, num_nodes());
-    AffineLoad<SparseMatrix> result{Vector::Zero(dim()), {}};
+    SystemLoad<SparseMatrix> result{Vector::Zero(dim()), {}};
     if (!loads.gravity.isZero(0))
       for (Index f = 0; f < numbering_.num_free(); ++f)
         result.force.segment<3>(3 * f) += nodal_mass_[numbering_.free_nodes()[f]] * loads.gravity;
@@ -178,11 +191,17 @@ class FullSystem {
       result.stiffness.resize(dim(), dim());
       result.stiffness.setFromTriplets(diagonal.begin(), diagonal.end());
     }
+    result.others = outside_terms(loads.others, numbering_);
     return result;
   }
 
   /// Unknowns → displacements of all nodes (n · node_dim), zero where fixed.
   Vector expand(VectorIn u) const { return numbering_.expand(u, node_dim); }
+  /// Displacement of a node [m], zero where fixed.
+  Point displacement(VectorIn u, Index node) const requires(node_dim == 3) {
+    const Index f = numbering_.free_index(node);
+    return f < 0 ? Point(Point::Zero()) : Point(u.segment<3>(3 * f));
+  }
   /// Values at all nodes → at the unknowns.
   Vector restrict(VectorIn full) const { return numbering_.restrict(full, node_dim); }
 

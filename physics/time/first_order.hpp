@@ -3,7 +3,7 @@
 
 #include <numerics/linear/lu_solver.hpp>
 #include <numerics/optimize/newton.hpp>
-#include <physics/system/dynamical_system.hpp>
+#include <physics/time/time_integrator.hpp>
 
 #include <algorithm>
 #include <type_traits>
@@ -52,7 +52,7 @@ struct BalanceOfRates {
 
   void residual(VectorIn u, VectorOut r) {
     system.force(u, r);
-    if (load->has_stiffness()) r += load->stiffness * u;
+    load->add_pull(u, r);
     const Vector storage = c * system.mass().cwiseProduct(u - u_tilde);
     const Vector terms = (c * system.mass() + system.rest_stiffness().diagonal()).cwiseProduct(u);
     scale_ = std::max({r.norm(), load->force.norm(), storage.norm(), rounding * terms.norm()});
@@ -61,13 +61,13 @@ struct BalanceOfRates {
   void jacobian(VectorIn u, MatrixType& J) const {
     system.stiffness(u, J);
     add_diagonal(J, c * system.mass());
-    if (load->has_stiffness()) add_few(J, load->stiffness);
+    load->add_stiffness(u, J);
   }
   double scale(VectorIn) const { return scale_; }
 
   const System& system;
   double rounding;  // of the terms, relative to the tolerance
-  const AffineLoad<MatrixType>* load = nullptr;
+  const SystemLoad<MatrixType>* load = nullptr;
   double c = 0;
   Vector u_tilde = Vector::Zero(system.dim());
 
@@ -84,6 +84,7 @@ template <SemidiscreteSystem System>
 class FirstOrderIntegrator {
  public:
   using MatrixType = typename System::MatrixType;
+  using State = FirstOrderState;
 
   /// \param system  must outlive the integrator.  \param h  time step [s], > 0.
   FirstOrderIntegrator(const System& system, double h, const FirstOrderOptions& options = {})
@@ -92,25 +93,31 @@ class FirstOrderIntegrator {
     require(options.tolerance > 0, "tolerance is " + std::to_string(options.tolerance) + ", expected > 0");
   }
 
+  double step_size() const { return h_; }  ///< [s]
+  int order() const { return options_.method == FirstOrderMethod::BackwardEuler ? 1 : 2; }
+  EnergyBehaviour energy_behaviour() const { return EnergyBehaviour::Falls; }  ///< ½ uᵀ M u of a linear system
+  FirstOrderState at_rest() const { return FirstOrderState::at_rest(system_.dim()); }
+
   /// The rate that u implies under this load; call it after setting a state by hand.
-  void balance(const AffineLoad<MatrixType>& load, FirstOrderState& state) const {
+  void balance(const SystemLoad<MatrixType>& load, FirstOrderState& state) const {
     check(load, state);
     Vector f(system_.dim());
     system_.force(state.u, f);
-    if (load.has_stiffness()) f += load.stiffness * state.u;
+    load.add_pull(state.u, f);
     state.u_dot = (load.force - f).cwiseQuotient(system_.mass());
     state.u_before.resize(0);
   }
 
   /// One time step under a load that is evaluated at its end. Not converging is reported and the best iterate kept; a
   /// state that is NotFinite stays as it was.
-  Report step(const AffineLoad<MatrixType>& load, FirstOrderState& state) {
-    check(load, state);
+  template <LoadOverTime<MatrixType> Load>
+  StepReport step(const Load& load, FirstOrderState& state) {
+    const SystemLoad<MatrixType>& end = load_at<MatrixType>(load, state.time + h_);
+    check(end, state);
     begin(state);
-    step_.load = &load;
+    step_.load = &end;
     Vector u = state.u;
-    const Report report =
-        newton_solve(step_, solver_, u, {.tolerance = options_.tolerance, .max_iterations = options_.max_iterations});
+    const StepReport report = Newton{}(step_, solver_, u, {options_.tolerance, options_.max_iterations});
     if (report.status == Status::NotFinite) return report;
     state.u_dot = step_.c * (u - step_.u_tilde);
     state.u_before = std::move(state.u);
@@ -136,9 +143,8 @@ class FirstOrderIntegrator {
     }
   }
 
-  void check(const AffineLoad<MatrixType>& load, const FirstOrderState& state) const {
-    require_size("load.force", load.force.size(), system_.dim());
-    if (load.has_stiffness()) require_size("load.stiffness", load.stiffness.rows(), system_.dim());
+  void check(const SystemLoad<MatrixType>& load, const FirstOrderState& state) const {
+    load.check(system_.dim());
     require_size("state.u", state.u.size(), system_.dim());
     require_size("state.u_dot", state.u_dot.size(), system_.dim());
     if (state.u_before.size() > 0) {
@@ -155,16 +161,16 @@ class FirstOrderIntegrator {
 };
 
 /// The steady state, f(u) = q, from a guess u by Newton's method with line search.
-/// \return as newton_solve does; Stagnated if no steady state is determined, as nothing fixes the unknowns.
+/// \return as Newton does; Stagnated if no steady state is determined, as nothing fixes the unknowns.
 template <SemidiscreteSystem System>
-Report solve_steady(const System& system, const AffineLoad<typename System::MatrixType>& load, Vector& u,
-                    const NewtonOptions& options = {}) {
+SolveReport solve_steady(const System& system, const SystemLoad<typename System::MatrixType>& load, Vector& u,
+                         const SolveLimits& limits = {}) {
   require_size("load.force", load.force.size(), system.dim());
   require_size("u", u.size(), system.dim());
-  detail::BalanceOfRates<System> balance(system, options.tolerance);
+  detail::BalanceOfRates<System> balance(system, limits.tolerance);
   balance.load = &load;
   TangentSolver<System> solver;
-  return newton_solve(balance, solver, u, options);
+  return Newton{}(balance, solver, u, limits);
 }
 
 }  // namespace supple

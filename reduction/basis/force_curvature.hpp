@@ -1,7 +1,7 @@
 #pragma once
 /// \file The second derivative of the internal force at rest.
 
-#include <reduction/subspace/rest_state.hpp>
+#include <physics/system/rest_state.hpp>
 
 #include <vector>
 

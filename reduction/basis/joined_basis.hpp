@@ -47,16 +47,12 @@ JoinedSubspace<A, B> join(const A& first, const B& second, const Vector& nodal_m
 
 /// What two builders span together: JoinedBasis{ModalBasis{.num_modes = 20}, AffineBasis{}}. Builders may be
 /// joined ones themselves.
-template <typename First, typename Second>
+template <SubspaceBuilder First, SubspaceBuilder Second>
 struct JoinedBasis {
   First first;
   Second second;
 
-  template <typename System>
-  JoinedSubspace<std::invoke_result_t<const First&, const System&>, std::invoke_result_t<const Second&, const System&>>
-  operator()(const System& system) const {
-    return join(first(system), second(system), system.nodal_mass());
-  }
+  auto operator()(const RestState& object) const { return join(first(object), second(object), object.nodal_mass); }
 };
 template <typename First, typename Second>
 JoinedBasis(First, Second) -> JoinedBasis<First, Second>;

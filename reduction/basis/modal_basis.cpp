@@ -5,13 +5,14 @@
 
 namespace supple {
 
-VibrationModes vibration_modes(const SparseMatrix& K, const Vector& mass, const NodeNumbering& numbering, int node_dim,
-                               std::span<const Index> stencils, Index stencil_size, const Points& rest_positions,
-                               const ModeOptions& options) {
+VibrationModes vibration_modes(const RestState& object, const ModeOptions& options) {
+  const NodeNumbering& numbering = object.numbering;
+  const Vector& mass = object.mass;
+  const Index node_dim = object.node_dim;
   VibrationModes result;
-  result.components = find_free_components(stencils, stencil_size, numbering);
+  result.components = find_free_components(object.stencils, object.stencil_size, numbering);
   const Index n = numbering.num_nodes();
-  if (rest_positions.rows() != n || node_dim != 3) result.components.free.clear();
+  if (object.positions.rows() != n || node_dim != 3) result.components.free.clear();
   result.num_rigid = result.components.num_rigid_modes();
   const Index num_flexible = options.num_modes - result.num_rigid;
   require(options.num_modes >= 1, "number of modes is " + std::to_string(options.num_modes) + ", expected at least 1");
@@ -25,7 +26,7 @@ VibrationModes vibration_modes(const SparseMatrix& K, const Vector& mass, const 
 
   Matrix rigid(mass.size(), 0);
   if (result.num_rigid > 0) {
-    const Matrix all = rigid_modes(rest_positions, result.components);
+    const Matrix all = rigid_modes(object.positions, result.components);
     const auto over_unknowns = [&](const Matrix& full) {
       Matrix restricted(mass.size(), full.cols());
       for (Index j = 0; j < full.cols(); ++j) restricted.col(j) = numbering.restrict(full.col(j), node_dim);
@@ -34,7 +35,7 @@ VibrationModes vibration_modes(const SparseMatrix& K, const Vector& mass, const 
     rigid = mass_orthonormalize(over_unknowns(all), mass).W;
   }
   const EigenPairs pairs = smallest_eigenpairs(
-      K, mass, rigid,
+      object.K, mass, rigid,
       {.num_modes = num_flexible, .tolerance = options.tolerance, .seed = options.seed, .progress = options.progress});
   if (pairs.report.status != Status::Converged)
     throw SolverError("vibration modes: only " + std::to_string(pairs.omega_squared.size()) + " of " +

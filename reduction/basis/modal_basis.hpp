@@ -3,7 +3,6 @@
 
 #include <core/progress.hpp>
 #include <numerics/eigen/eigensolver.hpp>
-#include <physics/system/node_numbering.hpp>
 #include <reduction/subspace/rigid_modes.hpp>
 #include <reduction/subspace/subspace_builder.hpp>
 
@@ -30,22 +29,10 @@ struct ModeOptions {
   Progress progress = {};
 };
 
-/// \param rest_positions  n × 3; with no rows, rigid modes are not known beforehand and have to be found.
+/// Where the object does not know its positions, rigid modes are not known beforehand and have to be found.
 /// \throws SolverError when the eigensolver does not converge; std::invalid_argument for more modes than
 /// unknowns.
-VibrationModes vibration_modes(const SparseMatrix& K, const Vector& mass, const NodeNumbering& numbering, int node_dim,
-                               std::span<const Index> stencils, Index stencil_size, const Points& rest_positions,
-                               const ModeOptions& options);
-
-template <typename System>
-VibrationModes vibration_modes(const System& system, const ModeOptions& options) {
-  using Model = std::remove_cvref_t<decltype(system.model())>;
-  Points positions;
-  if constexpr (System::node_dim == 3 && requires { system.model().rest_positions(); })
-    positions = system.model().rest_positions();
-  return vibration_modes(system.rest_stiffness(), system.mass(), system.numbering(), System::node_dim,
-                         system.stencils(), Model::stencil_size, positions, options);
-}
+VibrationModes vibration_modes(const RestState& object, const ModeOptions& options);
 
 /// The linear modes, nothing else: d = num_modes. For heat, the fields that decay slowest, with rates ω².
 struct ModalBasis {
@@ -54,9 +41,8 @@ struct ModalBasis {
   std::uint64_t seed = 1;
   Progress progress = {};
 
-  template <typename System>
-  DenseBasis operator()(const System& system) const {
-    const VibrationModes modes = vibration_modes(system, {num_modes, tolerance, seed, progress});
+  DenseBasis operator()(const RestState& object) const {
+    const VibrationModes modes = vibration_modes(object, {num_modes, tolerance, seed, progress});
     return {modes.vectors, modes.report()};
   }
 };
@@ -73,10 +59,11 @@ struct ExtendedModalBasis {
   std::uint64_t seed = 1;
   Progress progress = {};
 
-  template <typename System>
-  requires(System::node_dim == 3) NodalBasis operator()(const System& system) const {
-    return extend_modes(vibration_modes(system, {num_modes, tolerance, seed, progress}),
-                        system.model().rest_positions(), system.nodal_mass());
+  /// \throws std::invalid_argument for an object that is not in ℝ³.
+  NodalBasis operator()(const RestState& object) const {
+    object.require_space();
+    return extend_modes(vibration_modes(object, {num_modes, tolerance, seed, progress}), object.positions,
+                        object.nodal_mass);
   }
 };
 

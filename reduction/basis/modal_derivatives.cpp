@@ -121,11 +121,11 @@ ModalDerivativeVectors modal_derivatives(const RestState& object, const Vibratio
   return result;
 }
 
-DenseBasis ModalDerivatives::build(const RestState& object) const {
+DenseBasis ModalDerivatives::operator()(const RestState& object) const {
+  object.require_space();
   const FreeComponents parts = find_free_components(object.stencils, object.stencil_size, object.numbering);
   const VibrationModes modes =
-      vibration_modes(object.K, object.mass, object.numbering, 3, object.stencils, object.stencil_size,
-                      object.positions, {parts.num_rigid_modes() + num_modes, tolerance, seed, progress});
+      vibration_modes(object, {parts.num_rigid_modes() + num_modes, tolerance, seed, progress});
   const ModalDerivativeVectors derivatives = modal_derivatives(object, modes, tolerance, progress);
   const Vector mass = object.mass_of_rows();
   SubspaceReport report = modes.report();

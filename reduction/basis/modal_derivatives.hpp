@@ -1,8 +1,8 @@
 #pragma once
 /// \file How vibration modes change as the object deforms: subspaces for large deformations.
 
+#include <physics/system/rest_state.hpp>
 #include <reduction/basis/modal_basis.hpp>
-#include <reduction/subspace/rest_state.hpp>
 
 #include <array>
 
@@ -38,11 +38,7 @@ struct ModalDerivatives {
   Progress progress = {};
 
   /// \throws std::invalid_argument if `dimension` has no room for the modes.
-  template <typename System>
-  requires(System::node_dim == 3) DenseBasis operator()(const System& system) const {
-    return build(rest_state(system));
-  }
-  DenseBasis build(const RestState& object) const;
+  DenseBasis operator()(const RestState& object) const;
 };
 
 static_assert(SubspaceBuilder<ModalDerivatives>);

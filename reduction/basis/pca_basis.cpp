@@ -6,7 +6,7 @@
 
 namespace supple {
 
-DenseBasis PcaBasis::build(const RestState& object) const {
+DenseBasis PcaBasis::operator()(const RestState& object) const {
   const Index node_dim = object.node_dim;
   require_size("snapshots.rows()", snapshots.rows(), node_dim * object.numbering.num_nodes());
   require(snapshots.cols() > 0, "there are no snapshots");

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Subspaces from observed displacements, or temperatures.
 
-#include <reduction/subspace/rest_state.hpp>
+#include <physics/system/rest_state.hpp>
 #include <reduction/subspace/subspace_builder.hpp>
 
 namespace supple {
@@ -18,11 +18,7 @@ struct PcaBasis {
   /// \return report.singular_values are all min(n · node_dim, T) [m √kg]; `dropped` counts those that are zero.
   /// \throws std::invalid_argument if snapshots do not fit the system, are not finite or all zero, or move
   /// fixed nodes; for a negative dimension or another share.
-  template <typename System>
-  DenseBasis operator()(const System& system) const {
-    return build(rest_state(system));
-  }
-  DenseBasis build(const RestState& object) const;
+  DenseBasis operator()(const RestState& object) const;
 };
 
 static_assert(SubspaceBuilder<PcaBasis>);

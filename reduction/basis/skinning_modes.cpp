@@ -64,7 +64,8 @@ SkinningWeights SkinningModes::weights(const RestState& object) const {
   return result;
 }
 
-NodalBasis SkinningModes::build(const RestState& object) const {
+NodalBasis SkinningModes::operator()(const RestState& object) const {
+  object.require_space();
   const SkinningWeights blend = weights(object);
   // affine functions of order one, so that dependence shows
   const Eigen::RowVector3d centre = object.positions.colwise().mean();

@@ -2,7 +2,7 @@
 /// \file Subspaces from affine motions blended by smooth weights.
 
 #include <core/progress.hpp>
-#include <reduction/subspace/rest_state.hpp>
+#include <physics/system/rest_state.hpp>
 #include <reduction/subspace/subspace_builder.hpp>
 
 #include <cstdint>
@@ -31,11 +31,7 @@ struct SkinningModes {
   /// when the eigensolver does not converge.
   SkinningWeights weights(const RestState& object) const;
 
-  template <typename System>
-  requires(System::node_dim == 3) NodalBasis operator()(const System& system) const {
-    return build(rest_state(system));
-  }
-  NodalBasis build(const RestState& object) const;
+  NodalBasis operator()(const RestState& object) const;
 };
 
 static_assert(SubspaceBuilder<SkinningModes>);

@@ -9,11 +9,11 @@ namespace supple {
 /// Handles on an object and its equilibrium under them. Handles come, go and move at any time; each solve starts from
 /// the last state. Works on the reduced system (milliseconds) and on the full one (the reference) alike:
 ///
-///     Editor editor(system, positions, {.method = StaticMethod::Bfgs});
+///     Editor editor(system, positions, {.solver = LineSearchBfgs{}});
 ///     const Index hand = editor.add({nodes, 100, weight});
 ///     editor.move(hand, RigidMotion::turn({0, 0, 1}, 0.3, wrist));
 ///     editor.solve();
-///     const Vector u = system.subspace().reconstruct(editor.state());
+///     const Vector u = system.expand(editor.state());
 template <DynamicalSystem System>
 class Editor {
  public:
@@ -44,7 +44,7 @@ class Editor {
 
   /// To the equilibrium under the handles, from the last state. \return see StaticSolver; a state that is not finite
   /// is not kept.
-  StaticReport solve() {
+  SolveReport solve() {
     const Loads springs = handle_loads(handles_, rest_positions_);
     if (changed_) {  // the stiffness depends on the samples only
       load_ = system_.project(springs);
@@ -56,7 +56,7 @@ class Editor {
       load_.force = system_.project(forces).force;
     }
     Vector u = state_;
-    const StaticReport report = solver_.solve(load_, u);
+    const SolveReport report = solver_.solve(load_, u);
     if (report.status != Status::NotFinite) state_ = std::move(u);
     return report;
   }
@@ -83,7 +83,7 @@ class Editor {
   Points rest_positions_;
   StaticSolver<System> solver_;
   std::vector<Handle> handles_;
-  AffineLoad<typename System::MatrixType> load_;
+  SystemLoad<typename System::MatrixType> load_;
   Vector state_;
   bool changed_ = true;
 };

@@ -1,10 +1,9 @@
 #include <physics/body/material_law.hpp>
-#include <reduction/pipeline/reduce_stages.hpp>
+#include <reduction/pipeline/body_training.hpp>
+#include <reduction/pipeline/reduction.hpp>
 #include <sparse/selectors/selector_library.hpp>
 
 #include <Eigen/Eigenvalues>
-
-#include <sys/resource.h>
 
 namespace supple {
 
@@ -19,9 +18,7 @@ void check(const ReduceOptions& options) {
   require(options.equilibria.value_or(0) >= 0, "number of equilibria is negative, expected 0 or more");
   require(options.held_out_poses >= 0, "number of held-out poses is negative, expected 0 or more");
   check(options.subspace_choice());
-  const auto& selectors = known_selectors();
-  require(std::find(selectors.begin(), selectors.end(), options.selector) != selectors.end(),
-          "selector '" + options.selector + "' is not known, see known_selectors()");
+  (void)AnySelector(options.selector);
 }
 
 InvertedPoses inverted_rule(std::string_view law, std::optional<InvertedPoses> asked) {
@@ -49,28 +46,28 @@ Index num_equilibria(const Body& body, const ReduceOptions& options) {
   return options.equilibria.value_or(useful ? options.poses.count / 3 : 0);
 }
 
+ObjectTraits traits_of(const Body& body, const ReduceOptions& options) {
+  return {.diagonal = bounding_box(node_positions(body)).diagonal(),
+          .inverted = inverted_rule(law(body), options.poses.inverted),
+          .equilibria = num_equilibria(body, options),
+          .thin = std::holds_alternative<Shell>(body),
+          .component_name = std::string(component_name(body))};
+}
+
 ReducedModel reduce(const Body& body, const ReduceOptions& options, ReduceReport* report_out,
                     const Progress& progress) {
   check(options);
-  const Stopwatch total;
-  ReduceReport local, &report = report_out ? *report_out : local;
-  report = {};
-  Stages stage(report, progress);
+  StageClock stage(progress);
+  const AnySelector select(options.selector, RunSeeds(options).selection);
   ReducedModel model;
+  with_object(body, options, stage, [&](const auto& system, const auto& subspace) {
+    auto reduction = reduce(system, subspace, traits_of(body, options), select, options, stage);
+    static_cast<ReducedForces<AnyBasis>&>(model) = {std::move(reduction.subspace), std::move(reduction.rest_stiffness),
+                                                    std::move(reduction.indices), std::move(reduction.weights)};
+    if (report_out) *report_out = std::move(reduction.report);
+  });
   model.body = body;
   model.subspace_name = options.subspace;
-  with_training(body, options, stage, [&](const auto& training) {
-    const auto select = [&](const FittingProblem auto& problem, const SelectionRequest& request) {
-      return select_by_name(options.selector, AnyProblem(problem), request, options.seed);
-    };
-    WorkingComponents working = select_components(training, select, options, stage);
-    model.subspace = training.subspace;
-    model.rest_stiffness = training.rest_stiffness;
-    model.indices = std::move(working.indices);
-    model.weights = std::move(working.weights);
-  });
-  report.total_seconds = total.seconds();
-  report.peak_memory = peak_resident_memory();
   return model;
 }
 
@@ -95,11 +92,6 @@ WorkingComponents with_positive_weights(std::span<const Index> indices, VectorIn
     }
   result.weights.conservativeResize(static_cast<Index>(result.indices.size()));
   return result;
-}
-
-double peak_resident_memory() {
-  rusage usage{};
-  return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024.0 * static_cast<double>(usage.ru_maxrss) : 0;
 }
 
 }  // namespace supple

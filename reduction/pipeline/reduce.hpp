@@ -2,51 +2,12 @@
 /// \file The main job in one call: from a solid or a shell to a reduced model with a measured error.
 
 #include <core/progress.hpp>
-#include <reduction/basis/named_subspace.hpp>
+#include <reduction/pipeline/reduce_options.hpp>
 #include <reduction/pipeline/reduced_model.hpp>
-#include <reduction/training/force_fitting.hpp>
-#include <reduction/training/training_poses.hpp>
-#include <sparse/selection/selection.hpp>
 
-#include <optional>
-#include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 namespace supple {
-
-struct ReduceOptions {
-  std::string subspace = "extended";  ///< one of known_subspaces() or a sum of some, see SubspaceChoice
-  Index modes = 15;                   ///< r, rigid ones included
-  Index dimension = 0;                ///< d to aim at, where the modes leave a choice
-  Matrix snapshots = {};              ///< 3n × T displacements, for the subspace "pca"
-  PoseOptions poses = {};             ///< training poses
-  ForceNorm norm = ForceNorm::Stiffness;
-  Matrix given_poses = {};  ///< d × T, instead of random ones; or 3n × T displacements, projected to the subspace
-  /// Further poses, in equilibrium under random loads, where errors of the force count by the displacement that they
-  /// cause (see EquilibriumFitting): motions come out about twice as accurate. Loads are 3, 1 and 0.3 times those of the
-  /// largest poses, a third of that for shells, which buckle; all together weigh as much as the other poses. None: see
-  /// num_equilibria().
-  std::optional<Index> equilibria = {};
-  std::string selector = "nn-sp";      ///< see known_selectors()
-  Index points = 150;                  ///< s, largest number of components
-  double target_error = 0;             ///< if positive: as few components as reach this training error
-  std::vector<Index> candidates = {};  ///< components that may be selected beside must_keep; empty: all
-  std::vector<Index> must_keep = {};   ///< components that every selection has, unless their weight would be 0
-  Selection warm_start = {};           ///< an earlier selection to improve, such as that of a model to update
-  Index held_out_poses = 100;          ///< random ones at each of three amplitudes; 0: measure nothing held out
-  std::uint64_t seed = 1;
-
-  SubspaceChoice subspace_choice() const {
-    return {.name = subspace, .modes = modes, .dimension = dimension, .snapshots = snapshots, .seed = seed};
-  }
-
-  /// The paper's: 1000 poses with deviations ∝ 1/ω̄, errors in the M-orthonormal basis, NN-HTP. The amplitude,
-  /// which the paper leaves open, is the one at which its error for the dragon comes out (7 % of the
-  /// diagonal).
-  static ReduceOptions paper();
-};
 
 /// As many as the options say; otherwise a third of the random poses, none beside given ones nor for free shells, whose
 /// forces would be a quarter further off.
@@ -56,31 +17,9 @@ Index num_equilibria(const Body& body, const ReduceOptions& options);
 /// is finite in such tets, else Shrink. \throws std::invalid_argument if Keep is asked for where it is not.
 InvertedPoses inverted_rule(std::string_view law, std::optional<InvertedPoses> asked);
 
-/// Everything that was measured on the way.
-struct ReduceReport {
-  Index nodes = 0, components = 0, fixed_nodes = 0, dimension = 0, points = 0, poses = 0;
-  Vector omega;  ///< of the modes [rad/s]
-  Index rigid_modes = 0, dropped = 0;
-  Index inverted_poses = 0, redrawn_poses = 0, shrunk_poses = 0;
-  double training_error = 0;  ///< ε, Eq. 5; where there are equilibria, of their rows and those of the poses together
-  double held_out_error = 0;  ///< on fresh poses at the largest amplitude; NaN if none were asked for
-  std::vector<std::pair<double, double>> held_out;  ///< share of that amplitude (1, 0.3, 0.1) and error
-  /// Softest flexible eigenvalues of the fitted rest stiffness and of the exact reduced one [1/s²].
-  Vector fitted_eigenvalues, exact_eigenvalues;
-  double equilibrium_error = 0;  ///< rms of ‖Δq‖ / ‖q‖ over the equilibria, by the model's own tangents; NaN without
-  SelectionReport selection;
-  std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order
-  double total_seconds = 0;
-  double peak_memory = 0;  ///< largest resident size of the process so far [bytes]
-  std::vector<std::string> notes;
-};
-
 /// \throws std::invalid_argument for options out of range; InputError for poses without finite force;
 /// SolverError.
 ReducedModel reduce(const Body& body, const ReduceOptions& options = {}, ReduceReport* report = nullptr,
                     const Progress& progress = {});
-
-/// Resident memory of the process: the largest so far [bytes]; 0 where the system does not tell.
-double peak_resident_memory();
 
 }  // namespace supple

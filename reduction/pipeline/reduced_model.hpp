@@ -2,23 +2,22 @@
 /// \file A reduced model as data: what `reduce` makes, files keep, and simulations load.
 
 #include <physics/body/body.hpp>
-#include <physics/body/force_models.hpp>
-#include <reduction/system/reduced_system.hpp>
+#include <physics/system/any_system.hpp>
+#include <reduction/pipeline/reduced_forces.hpp>
+#include <reduction/subspace/subspace.hpp>
+#include <reduction/system/reduced_modes.hpp>
+#include <reduction/system/row_precision.hpp>
 
 #include <filesystem>
 #include <map>
-#include <memory>
-#include <variant>
+#include <string>
 
 namespace supple {
 
-struct ReducedModel {
+/// An object and the selection that stands for it.
+struct ReducedModel : ReducedForces<AnyBasis> {
   Body body;
-  std::variant<std::shared_ptr<const NodalBasis>, std::shared_ptr<const DenseBasis>> subspace;
   std::string subspace_name = "extended";  ///< see SubspaceChoice
-  std::vector<Index> indices;              ///< selected components of its force model, ascending
-  Vector weights;                          ///< of the selected components, > 0
-  Matrix rest_stiffness;                   ///< UᵀK(0)U, exact, d × d
   /// How it was made: options, seed, version, errors. Free text; the file keeps it.
   std::map<std::string, std::string> provenance;
 
@@ -28,25 +27,14 @@ struct ReducedModel {
   const Vector& omega() const {  ///< of the modes it was made from [rad/s]
     return std::visit([](const auto& basis) -> const Vector& { return basis->report.omega; }, subspace);
   }
+
+  /// What integrators and static solvers run: a value, which shares the basis with the model and no longer needs it. For
+  /// the system's own type, see with_reduced_system.
+  AnySystem<Matrix> system(RowPrecision precision = RowPrecision::Double) const;
 };
 
 /// Vibration modes of a model, of its exact stiffness at rest.
 ReducedModes reduced_modes(const ReducedModel& model);
-
-/// Calls visit(system) with the ReducedSystem of the model; the system lives during the call.
-template <typename Visitor>
-decltype(auto) with_reduced_system(const ReducedModel& model, Visitor&& visit,
-                                   RowPrecision precision = RowPrecision::Double) {
-  return with_force_model(model.body, [&]<typename Model>(const std::shared_ptr<const Model>& force) -> decltype(auto) {
-    return std::visit(
-        [&]<typename S>(const std::shared_ptr<const S>& subspace) -> decltype(auto) {
-          const ReducedSystem<Model, S> system(force, subspace, model.indices, model.weights, model.rest_stiffness,
-                                               nodal_mass(model.body), precision);
-          return visit(system);
-        },
-        model.subspace);
-  });
-}
 
 /// Writes one file in the safetensors layout (see core/tensor_file.hpp), in one step; docs/model-file.md
 /// lists its arrays.

@@ -1,5 +1,7 @@
-#include <reduction/pipeline/reduce_stages.hpp>
+#include <core/peak_memory.hpp>
+#include <reduction/pipeline/body_training.hpp>
 #include <reduction/pipeline/selection_study.hpp>
+#include <reduction/training/pull_test.hpp>
 #include <sparse/selectors/nn_sp.hpp>
 
 #include <limits>
@@ -41,31 +43,31 @@ struct SelectionStudy::Interface {
 
 template <typename AnyTraining>
 struct SelectionStudy::Model final : Interface {
-  using Stacked = StackedProblem<typename AnyTraining::Fitting, typename decltype(AnyTraining::equilibria)::value_type>;
-  using Pulls = PullTest<typename AnyTraining::Model,
-                         std::remove_const_t<typename decltype(AnyTraining::subspace)::element_type>>;
+  using Stacked = StackedProblem<typename AnyTraining::Fitting, typename AnyTraining::Equilibria>;
+  using Pulls = PullTest<decltype(std::declval<AnyTraining>().object.reduced_system({}, Vector()))>;
 
-  Model(AnyTraining&& some, double diagonal, std::vector<PullScene> pulled, Stages& stage)
+  Model(AnyTraining&& some, std::vector<PullScene> pulled, StageClock& stage)
       : training(std::move(some)),
         stacked(training.equilibria ? std::optional<Stacked>(std::in_place, training.fitting, *training.equilibria)
                                     : std::nullopt),
         any(stacked ? AnyProblem(*stacked) : AnyProblem(training.fitting)) {
-    exact_softest = training.softest_eigenvalues(training.rest_stiffness, 1)[0];
+    this->report = report_of(training);
+    exact_softest = object.softest_eigenvalues(object.rest_stiffness, 1)[0];
     if (pulled.empty()) return;
     stage("reference motions", [&](auto) {
       const Index m = training.fitting.cols();
       const Selection rough = NnSp{.max_iterations = 5}(any, std::min(m, 2 * training.fitting.poses().rows()));
-      pulls.emplace(std::move(pulled), training.modes, diagonal, training.reduced_system(rough.indices, rough.weights));
+      pulls.emplace(std::move(pulled), object.modes, object.traits.diagonal,
+                    object.reduced_system(rough.indices, rough.weights));
       std::vector<Index> all(m);
       std::iota(all.begin(), all.end(), Index{0});
-      const auto unfitted = training.reduced_system(all, Vector::Ones(m));
+      const auto unfitted = object.reduced_system(all, Vector::Ones(m));
       references = pulls->move(unfitted);
       for (std::size_t k = 0; k < references.size(); ++k) {
         this->reached.push_back(pulls->reach(unfitted, references[k].q));
         if (references[k].missed_steps > 0)
-          stage.report().notes.push_back(std::to_string(references[k].missed_steps) +
-                                         " steps of the reference motion '" + pulls->scenes()[k].name +
-                                         "' missed the tolerance");
+          this->report.notes.push_back(std::to_string(references[k].missed_steps) + " steps of the reference motion '" +
+                                       pulls->scenes()[k].name + "' missed the tolerance");
       }
     });
     this->scenes = pulls->scenes();
@@ -91,9 +93,9 @@ struct SelectionStudy::Model final : Interface {
     }
     working = training.refitted(working);
     hold_out(working.indices, working.weights);
-    const auto system = training.reduced_system(working.indices, working.weights);
+    const auto system = object.reduced_system(working.indices, working.weights);
     const Vector rest = Vector::Zero(system.dim());
-    measure.softest_eigenvalue = training.softest_eigenvalues(system.stiffness(rest), 1)[0] / exact_softest;
+    measure.softest_eigenvalue = object.softest_eigenvalues(system.stiffness(rest), 1)[0] / exact_softest;
     Vector force(system.dim());
     const Vector q = training.fitting.poses().col(0);
     measure.force_seconds = median_seconds([&] { system.force(q, force); });
@@ -106,6 +108,7 @@ struct SelectionStudy::Model final : Interface {
   }
 
   AnyTraining training;
+  const decltype(AnyTraining::object)& object = training.object;
   std::optional<Stacked> stacked;  // if there are equilibria
   AnyProblem any;
   double exact_softest = 0;
@@ -116,16 +119,14 @@ struct SelectionStudy::Model final : Interface {
 SelectionStudy::SelectionStudy(const Body& body, const ReduceOptions& options, std::vector<PullScene> scenes,
                                const Progress& progress) {
   check(options);
-  const Stopwatch total;
-  ReduceReport report;
-  Stages stage(report, progress);
-  const double diagonal = bounding_box(node_positions(body)).diagonal();
-  with_training(body, options, stage, [&]<typename AnyTraining>(AnyTraining&& training) {
-    self_ = std::make_unique<Model<AnyTraining>>(std::move(training), diagonal, std::move(scenes), stage);
+  StageClock stage(progress);
+  with_object(body, options, stage, [&](const auto& system, const auto& subspace) {
+    auto training = train(system, subspace, traits_of(body, options), options, stage);
+    self_ = std::make_unique<Model<decltype(training)>>(std::move(training), std::move(scenes), stage);
   });
-  report.total_seconds = total.seconds();
-  report.peak_memory = peak_resident_memory();
-  self_->report = std::move(report);
+  self_->report.seconds = stage.seconds();
+  self_->report.total_seconds = stage.total_seconds();
+  self_->report.peak_memory = peak_resident_memory();
 }
 
 SelectionStudy::~SelectionStudy() = default;

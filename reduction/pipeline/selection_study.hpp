@@ -1,8 +1,10 @@
 #pragma once
 /// \file One problem, many selections: what each is worth beyond its training error.
 
-#include <reduction/pipeline/reduce.hpp>
-#include <reduction/training/pull_test.hpp>
+#include <core/progress.hpp>
+#include <physics/body/body.hpp>
+#include <reduction/pipeline/reduce_options.hpp>
+#include <reduction/training/pull_scene.hpp>
 #include <sparse/problem/any_problem.hpp>
 
 #include <memory>

@@ -6,8 +6,10 @@
 #include <core/types.hpp>
 
 #include <concepts>
+#include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace supple {
@@ -96,11 +98,26 @@ struct KroneckerBasis {
 using DenseBasis = KroneckerBasis<1>;
 using NodalBasis = KroneckerBasis<3>;
 
-/// Every stage takes subspaces through this concept; all of them are some KroneckerBasis.
+/// A basis whose structure is known at run time.
+using AnyBasis = std::variant<std::shared_ptr<const NodalBasis>, std::shared_ptr<const DenseBasis>>;
+
+/// A subspace u = U q with U = W ⊗ I_block, as training, fitting and simulation see it: KroneckerBasis, or a structure of
+/// one's own with these members. It also promises that they agree: all of them are views of one U.
 template <typename S>
-concept Subspace = requires(const S& subspace, VectorIn q, VectorOut u) {
-  requires std::same_as<S, KroneckerBasis<S::block>>;
+concept Subspace = requires(const S& subspace, VectorIn vector, VectorOut sum, Index dof) {
+  requires S::block == 1 || S::block == 3;
+  { subspace.W } -> std::convertible_to<const RowMatrix&>;  // (n · node_dim / block) × (d / block)
+  { subspace.report } -> std::convertible_to<const SubspaceReport&>;
+  { subspace.dim() } -> std::convertible_to<Index>;                 // d
+  { subspace.full_dim() } -> std::convertible_to<Index>;            // n · node_dim
+  { subspace.num_fields() } -> std::convertible_to<Index>;          // d / block
+  { subspace.reconstruct(vector) } -> std::convertible_to<Vector>;  // U q
+  { subspace.project(vector) } -> std::convertible_to<Vector>;      // Uᵀ f
+  { subspace.at(dof, vector) } -> std::convertible_to<double>;      // (U q) at one unknown of the mesh
+  subspace.add_row(dof, 1.0, sum);                                  // sum += 1.0 · row `dof` of U
 };
+
+static_assert(Subspace<DenseBasis> && Subspace<NodalBasis>);
 
 /// M-orthonormal columns with the same span as those of W, in the order given; a column whose part outside
 /// the span of the earlier ones is below `tolerance` of its length is dropped. \param mass  weight of each

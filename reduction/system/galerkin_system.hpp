@@ -3,6 +3,7 @@
 
 #include <physics/system/full_system.hpp>
 #include <reduction/system/reduced_modes.hpp>
+#include <reduction/system/subspace_load.hpp>
 
 #include <memory>
 
@@ -38,12 +39,21 @@ class GalerkinSystem {
     K = project_stiffness(*subspace_, *system_, system_->stiffness(system_->restrict(subspace_->reconstruct(q))));
   }
 
+  Index num_nodes() const { return system_->num_nodes(); }
+  /// Displacements of all nodes, n · node_dim.
+  Vector expand(VectorIn q) const { return subspace_->reconstruct(q); }
+  /// Displacement of a node [m].
+  Point displacement(VectorIn q, Index node) const requires(Model::node_dim == 3) {
+    return {subspace_->at(3 * node, q), subspace_->at(3 * node + 1, q), subspace_->at(3 * node + 2, q)};
+  }
+
   /// Forces on all nodes, n · node_dim → on the unknowns.
-  AffineLoad<Matrix> project(VectorIn nodal_forces) const { return {subspace_->project(nodal_forces), {}}; }
-  AffineLoad<Matrix> project(const Loads& loads) const requires(Model::node_dim == 3) {
-    const AffineLoad<SparseMatrix> full = system_->project(loads);
-    AffineLoad<Matrix> result{subspace_->project(system_->expand(full.force)), {}};
+  SystemLoad<Matrix> project(VectorIn nodal_forces) const { return {subspace_->project(nodal_forces), {}}; }
+  SystemLoad<Matrix> project(const Loads& loads) const requires(Model::node_dim == 3) {
+    const SystemLoad<SparseMatrix> full = system_->project(loads);
+    SystemLoad<Matrix> result{subspace_->project(system_->expand(full.force)), {}};
     if (full.has_stiffness()) result.stiffness = project_stiffness(*subspace_, *system_, full.stiffness);
+    result.others = outside_terms(loads.others, subspace_->W, S::block);
     return result;
   }
 

@@ -7,6 +7,8 @@
 #include <physics/system/dynamical_system.hpp>
 #include <reduction/system/pose_sweep.hpp>
 #include <reduction/system/reduced_modes.hpp>
+#include <reduction/system/row_precision.hpp>
+#include <reduction/system/subspace_load.hpp>
 
 #include <memory>
 #include <span>
@@ -14,11 +16,6 @@
 #include <vector>
 
 namespace supple {
-
-/// How a ReducedSystem keeps the rows of W behind its components. A dense basis of hundreds of modes is larger than the
-/// caches near a core, and Single halves what each force has to read. Rounded rows (relative 6e-8) are those of a basis
-/// close by: energy, force and tangent still agree by differentiation, so solvers reach any tolerance.
-enum class RowPrecision { Double, Single };
 
 /// The unknowns q of u = U q under the forces F̃(q) = Σ wᵢ Uᵀ fᵢ(U q) over the selected components (Eq. 4).
 /// Energy (where the model has one), force and tangent come from the same components and weights, so they agree by
@@ -81,14 +78,7 @@ class ReducedSystem {
       };
       std::visit(keep_rows, E_);
     }
-    gravity_ = Matrix::Zero(dim(), 3);
-    if constexpr (Model::node_dim == 3) {
-      for (int x = 0; x < 3; ++x) {
-        Vector f = Vector::Zero(subspace_->full_dim());
-        for (Index v = 0; v < nodal_mass.size(); ++v) f[3 * v + x] = nodal_mass[v];
-        gravity_.col(x) = subspace_->project(f);
-      }
-    }
+    if constexpr (Model::node_dim == 3) gravity_ = project_gravity(*subspace_, nodal_mass);
   }
 
   Index dim() const { return subspace_->dim(); }
@@ -189,22 +179,18 @@ class ReducedSystem {
   }
 
   /// Forces on all nodes, n · node_dim → on the unknowns.
-  AffineLoad<Matrix> project(VectorIn nodal_forces) const { return {subspace_->project(nodal_forces), {}}; }
-  AffineLoad<Matrix> project(const Loads& loads) const requires(Model::node_dim == 3) {
-    check_loads(loads, subspace_->full_dim() / 3);
-    AffineLoad<Matrix> result{gravity_ * loads.gravity, {}};
-    for (const NodalForce& load : loads.forces)
-      for (int x = 0; x < 3; ++x) subspace_->add_row(3 * load.node + x, load.force[x], result.force);
-    if (!loads.springs.empty()) result.stiffness = Matrix::Zero(dim(), dim());
-    for (const PointSpring& spring : loads.springs)
-      for (int x = 0; x < 3; ++x) {
-        Vector row = Vector::Zero(dim());
-        subspace_->add_row(3 * spring.node + x, 1, row);
-        result.force += spring.stiffness * spring.displacement[x] * row;
-        result.stiffness.noalias() += spring.stiffness * row * row.transpose();
-      }
-    return result;
+  SystemLoad<Matrix> project(VectorIn nodal_forces) const { return {subspace_->project(nodal_forces), {}}; }
+  SystemLoad<Matrix> project(const Loads& loads) const requires(Model::node_dim == 3) {
+    return project_loads(*subspace_, gravity_, loads);
   }
+
+  /// Displacements of all nodes, n · node_dim.
+  Vector expand(VectorIn q) const { return subspace_->reconstruct(q); }
+  /// Displacement of a node [m].
+  Point displacement(VectorIn q, Index node) const requires(Model::node_dim == 3) {
+    return {subspace_->at(3 * node, q), subspace_->at(3 * node + 1, q), subspace_->at(3 * node + 2, q)};
+  }
+  Index num_nodes() const { return subspace_->full_dim() / Model::node_dim; }
 
  private:
   Index num_fields() const { return subspace_->num_fields(); }

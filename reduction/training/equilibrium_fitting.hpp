@@ -21,7 +21,7 @@ Matrix equilibrium_poses(const System& system, const ReducedModes& modes, Matrix
   parallel_for(Q.cols(), [&](Index t) {
     StaticSolver solver(system, {.tolerance = 1e-4, .max_iterations = 60});
     Vector q = Vector::Zero(Q.rows());
-    const StaticReport report = solver.solve({system.rest_stiffness() * Q.col(t), springs}, q);
+    const SolveReport report = solver.solve({system.rest_stiffness() * Q.col(t), springs}, q);
     if (report.status != Status::NotFinite && q.norm() > 0) poses.col(t) = q;
   });
   return poses;

@@ -3,19 +3,13 @@
 
 #include <reduction/system/pose_sweep.hpp>
 #include <reduction/system/reduced_modes.hpp>
+#include <reduction/training/pose_options.hpp>
 #include <sparse/problem/fitting_problem.hpp>
 
 #include <cmath>
 #include <mutex>
 
 namespace supple {
-
-/// The inner product in which Eq. 5 measures forces. Indices and weights are comparable, errors are not.
-enum class ForceNorm {
-  Mass,       ///< ‖F̄‖ for an M-orthonormal basis, as the paper may mean it; stiff directions dominate
-  Stiffness,  ///< F̄ᵀ K̄⁻¹ F̄: forces count by the displacement they would cause, which is what an integrator
-              ///< sees
-};
 
 /// Rows of A and b are L F̄: L = I for ForceNorm::Mass, Ω̄⁻¹ Φ̄ᵀ for ForceNorm::Stiffness (energy-free modes
 /// take the lowest positive frequency).

@@ -4,8 +4,10 @@
 
 #include <core/parallel.hpp>
 #include <core/stopwatch.hpp>
+#include <physics/system/any_system.hpp>
 #include <physics/time/newmark.hpp>
-#include <reduction/system/reduced_system.hpp>
+#include <reduction/system/reduced_modes.hpp>
+#include <reduction/training/pull_scene.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -13,17 +15,6 @@
 #include <vector>
 
 namespace supple {
-
-/// A load from rest, for `steps` steps of a 60th of the slowest period: a uniform acceleration of an object that is
-/// held; a force along the slowest flexible mode of one that is free, which would fly off without deforming.
-struct PullScene {
-  std::string name;
-  double target = 0.25;             ///< largest displacement of a node, as a share of the object's diagonal
-  double ramp = 0;                  ///< steps over which the pull grows; 0: it is there at once
-  double damping = 0;               ///< ratio of the slowest mode, half by α M and half by β K
-  Point direction = {0.5, 0.1, 1};  ///< of the acceleration
-  int steps = 120;
-};
 
 /// One motion, a column for each step, and what its steps took.
 struct PulledMotion {
@@ -35,11 +26,9 @@ struct PulledMotion {
 };
 
 /// Pulls one object with any of its selections. A reference costs O(m) a force; compute it once.
-template <ForceModel Model, Subspace S>
+template <ObjectSystem System>
 class PullTest {
  public:
-  using System = ReducedSystem<Model, S>;
-
   /// \param modes     of the exact reduced stiffness.  \param diagonal  of the object [m].
   /// \param sample    a system to scale the pulls by, so that its motions reach their targets; a rough
   /// selection will do.
@@ -63,7 +52,7 @@ class PullTest {
   const std::vector<PullScene>& scenes() const { return scenes_; }
   double step() const { return 2 * std::numbers::pi / omega_ / 60; }  ///< [s]
 
-  PulledMotion move(const System& system, std::size_t scene, NonlinearSolver solver = NonlinearSolver::Bfgs) const;
+  PulledMotion move(const System& system, std::size_t scene, const NonlinearSolver& solver = Bfgs{}) const;
   /// Motions in all scenes, by all threads.
   std::vector<PulledMotion> move(const System& system) const {
     std::vector<PulledMotion> motions(scenes_.size());
@@ -75,7 +64,7 @@ class PullTest {
   double reach(const System& system, const Matrix& q) const {
     double largest = 0;
     for (Index j = 0; j < q.cols(); ++j) {
-      const Vector u = system.subspace().reconstruct(q.col(j));
+      const Vector u = system.expand(q.col(j));
       largest = std::max(largest, Eigen::Map<const Points>(u.data(), u.size() / 3, 3).rowwise().norm().maxCoeff());
     }
     return largest / diagonal_;
@@ -94,15 +83,15 @@ inline double deviation(const PulledMotion& motion, const PulledMotion& referenc
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-template <ForceModel Model, Subspace S>
-PulledMotion PullTest<Model, S>::move(const System& system, std::size_t index, NonlinearSolver solver) const {
+template <ObjectSystem System>
+PulledMotion PullTest<System>::move(const System& system, std::size_t index, const NonlinearSolver& solver) const {
   const PullScene& scene = scenes_[index];
   const RayleighDamping damping{.alpha = scene.damping * omega_, .beta = scene.damping / omega_};
   Newmark newmark(system, step(), {.damping = damping, .solver = solver});
   State state = State::at_rest(system.dim());
   const auto load_at = [&](int step) {
     const double share = scene.ramp > 0 ? std::min(1.0, step / scene.ramp) : 1.0;
-    return AffineLoad<Matrix>{share * pulls_[index], {}};
+    return SystemLoad<Matrix>{share * pulls_[index], {}};
   };
   newmark.balance(load_at(0), state);
   PulledMotion motion;
@@ -113,7 +102,7 @@ PulledMotion PullTest<Model, S>::move(const System& system, std::size_t index, N
     const StepReport report = newmark.step(load, state);
     motion.seconds.push_back(watch.seconds());
     motion.iterations += static_cast<double>(report.iterations) / scene.steps;
-    motion.refreshes += static_cast<double>(report.refreshes) / scene.steps;
+    motion.refreshes += static_cast<double>(report.tangents) / scene.steps;
     motion.worst_residual = std::max(motion.worst_residual, report.residual);
     motion.missed_steps += report.status != Status::Converged;
     motion.q.col(k) = state.u;

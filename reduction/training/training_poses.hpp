@@ -4,6 +4,7 @@
 #include <core/random.hpp>
 #include <reduction/system/pose_sweep.hpp>
 #include <reduction/system/reduced_modes.hpp>
+#include <reduction/training/pose_options.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,29 +13,6 @@
 #include <optional>
 
 namespace supple {
-
-/// What to do with a pose in which a component is inverted (its volume is ≤ 0).
-enum class InvertedPoses {
-  Keep,    ///< as it is; for materials defined everywhere, such as St. Venant–Kirchhoff
-  Shrink,  ///< scale the pose by ¾ until nothing is inverted; keeps the direction, lowers the amplitude
-  Redraw,  ///< draw another pose, up to 20 times, then shrink
-};
-
-/// Normal random numbers in the coordinates of the reduced vibration modes, with standard deviation ∝ ω̄⁻ᵉ
-/// (Sec. 4.1). Rigid modes of free objects stay at rest: their forces turn with the object in a subspace W ⊗
-/// I₃.
-struct PoseOptions {
-  Index count = 300;          ///< T
-  double omega_exponent = 2;  ///< 1 in the paper; 2 draws less energy into stiff modes
-  /// Expected rms displacement of a pose (mass-weighted mean over the object) as a share of the bounding
-  /// box's diagonal; pose t uses entry t modulo their number. Mixed sizes keep small motions, which the rest
-  /// stiffness rules, from drowning in large ones.
-  std::vector<double> amplitudes = {0.05, 0.017, 0.005};
-  std::optional<InvertedPoses> inverted = {};  ///< none: Keep, or Shrink for laws without energy there
-  std::uint64_t seed = 1;
-
-  double largest_amplitude() const { return *std::max_element(amplitudes.begin(), amplitudes.end()); }
-};
 
 struct TrainingPoses {
   Matrix Q;                       ///< d × T, reduced coordinates

@@ -1,22 +1,71 @@
 #pragma once
-/// \file Selectors by name for problems whose type is known at run time: all compiled once, in one place.
+/// \file Registry of selectors, for problems whose type is known at run time: all compiled once, in one place.
 
+#include <core/registry.hpp>
 #include <sparse/problem/any_problem.hpp>
-#include <sparse/selection/selection.hpp>
+#include <sparse/selection/subset_selector.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace supple {
 
-/// Names that select_by_name understands, the default first.
-const std::vector<std::string>& known_selectors();
+/// A selector by name, its type erased.
+struct NamedSelector {
+  using Run = std::function<Selection(const AnyProblem& problem, const SelectionRequest& request)>;
 
-/// Runs the selector of this name with its default options and this seed.
-/// \throws std::invalid_argument for a name that is not known, listing those that are.
-Selection select_by_name(std::string_view name, const AnyProblem& problem, const SelectionRequest& request,
+  std::string name, description;
+  std::vector<OptionInfo> options;
+  /// The selector with some options replaced and a seed. \throws std::invalid_argument for options that it has not.
+  std::function<Run(const OptionValues& options, std::uint64_t seed)> make;
+};
+
+/// The entry of a selector of one's own; a member `seed` takes the seed.
+///
+///     selectors().add(named_selector("my-greedy", "columns of largest norm",
+///                                    OptionsOf<MyGreedy>().add("batch", &MyGreedy::batch, "columns in each step")));
+template <typename Selector>
+requires SubsetSelectorFor<Selector, AnyProblem> NamedSelector
+named_selector(std::string name, std::string description, OptionsOf<Selector> options = OptionsOf<Selector>()) {
+  NamedSelector entry{name, std::move(description), options.info(), {}};
+  entry.make = [name, options](const OptionValues& values, std::uint64_t seed) -> NamedSelector::Run {
+    Selector select = options.make(values, "selector " + name);
+    if constexpr (requires { select.seed = seed; }) select.seed = seed;
+    return select;
+  };
+  return entry;
+}
+
+/// All selectors by name, the default first.
+Registry<NamedSelector>& selectors();
+/// Their names.
+std::vector<std::string> known_selectors();
+
+/// A selector as a user writes it, "nn-sp:max_iterations=12". Takes problems of any type; a value.
+class AnySelector {
+ public:
+  /// \throws std::invalid_argument for a name or an option that is not known, listing those that are.
+  explicit AnySelector(std::string_view choice, std::uint64_t seed = 0);
+
+  template <typename P>
+  Selection operator()(const P& problem, const SelectionRequest& request) const {
+    if constexpr (std::same_as<P, AnyProblem>)
+      return run_(problem, request);
+    else
+      return run_(AnyProblem(problem), request);
+  }
+  const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+  NamedSelector::Run run_;
+};
+
+/// Runs the selector of this name with this seed.
+Selection select_by_name(std::string_view choice, const AnyProblem& problem, const SelectionRequest& request,
                          std::uint64_t seed);
 
 }  // namespace supple

@@ -1,6 +1,7 @@
 #pragma once
-/// \file Every selector by its name, for programs that let their user choose.
+/// \file Table of all selectors with their names and options, of their own types.
 
+#include <core/registry.hpp>
 #include <sparse/selectors/baselines.hpp>
 #include <sparse/selectors/ecm.hpp>
 #include <sparse/selectors/greedy_cubature.hpp>
@@ -11,35 +12,113 @@
 #include <sparse/selectors/row_compression.hpp>
 
 #include <array>
+#include <optional>
 #include <string_view>
+#include <tuple>
 
 namespace supple {
 
-inline constexpr std::array<std::string_view, 13> selector_names{
-    "nn-sp",          "nn-htp", "nn-htp-full", "htp", "niht",   "nn-niht", "greedy",
-    "batched-greedy", "nn-omp", "ecsw",        "ecm", "random", "all"};
+template <>
+inline constexpr std::array names_of<StepLength>{Named{StepLength::Paper, "paper"}, Named{StepLength::Exact, "exact"}};
+template <>
+inline constexpr std::array names_of<NihtStep>{Named{NihtStep::Normalized, "normalized"},
+                                               Named{NihtStep::Paper, "paper"}, Named{NihtStep::Exact, "exact"}};
 
-/// Calls use(selector) with the selector of that name, its other options at their defaults.
+/// A selector of its own type by its name.
+template <typename Selector>
+struct SelectorEntry {
+  using type = Selector;
+  std::string_view name, description;
+  OptionsOf<Selector> options;
+};
+
+/// Every selector, the default first. What commands choose from, selectors(), begins with these.
+inline const auto& selector_table() {
+  constexpr double all = std::numeric_limits<double>::infinity();
+  static const auto htp = []<typename S>(S defaults) {
+    return OptionsOf<S>(std::move(defaults))
+        .add("tolerance", &S::tolerance, "relative error to stop at")
+        .add("max_iterations", &S::max_iterations, "iterations at most")
+        .add("candidates_per_size", &S::candidates_per_size, "columns drawn in each, over the size; inf: all")
+        .add("step", &S::step, "along the gradient, one of " + all_names_of<decltype(S::step)>())
+        .add("patience", &S::patience, "draws in a row that change nothing before it stops");
+  };
+  static const std::tuple table{
+      SelectorEntry<NnSp>{
+          "nn-sp", "non-negative subspace pursuit: grows, prunes and exchanges",
+          OptionsOf<NnSp>()
+              .add("tolerance", &NnSp::tolerance, "relative error to stop at")
+              .add("max_iterations", &NnSp::max_iterations, "iterations at most; 0: 6000 / size, but at least 24")
+              .add("candidates_per_size", &NnSp::candidates_per_size, "columns drawn in each, over the size")
+              .add("added_per_size", &NnSp::added_per_size, "share of the size that each tries to exchange")
+              .add("patience", &NnSp::patience, "draws in a row that change nothing before it stops")},
+      SelectorEntry<NnHtp>{"nn-htp", "non-negative hard thresholding pursuit, the paper's", htp(NnHtp{})},
+      SelectorEntry<NnHtp>{"nn-htp-full", "the same on all columns in each iteration",
+                           htp(NnHtp{.candidates_per_size = all})},
+      SelectorEntry<Htp>{"htp", "hard thresholding pursuit, weights of any sign", htp(Htp{})},
+      SelectorEntry<Niht>{"niht", "normalised iterative hard thresholding, weights of any sign", htp(Niht{})},
+      SelectorEntry<NnNiht>{"nn-niht", "the same, non-negative", htp(NnNiht{})},
+      SelectorEntry<GreedyCubature>{
+          "greedy", "greedy cubature: the best of some random columns, one by one",
+          OptionsOf<GreedyCubature>()
+              .add("tolerance", &GreedyCubature::tolerance, "relative error to stop at")
+              .add("candidates", &GreedyCubature::candidates, "columns drawn in each step")
+              .add("subset_groups", &GreedyCubature::subset_groups, "poses to train on; 0: all")},
+      SelectorEntry<BatchedGreedy>{
+          "batched-greedy", "several columns between two fits",
+          OptionsOf<BatchedGreedy>()
+              .add("tolerance", &BatchedGreedy::tolerance, "relative error to stop at")
+              .add("added_per_size", &BatchedGreedy::added_per_size, "share of the size that joins in each step")
+              .add("candidates_per_added", &BatchedGreedy::candidates_per_added, "columns drawn for each that joins")},
+      SelectorEntry<NnOmp>{"nn-omp", "non-negative orthogonal matching pursuit: the best of all columns, one by one",
+                           OptionsOf<NnOmp>()
+                               .add("tolerance", &NnOmp::tolerance, "relative error to stop at")
+                               .add("overshoot", &NnOmp::overshoot, "share of the size to grow to before pruning")
+                               .add("batch", &NnOmp::batch, "columns added in each step")
+                               .add("candidates", &NnOmp::candidates, "columns looked at in each step")},
+      SelectorEntry<Ecsw>{"ecsw", "energy-conserving sampling and weighting",
+                          OptionsOf<Ecsw>().add("tolerance", &Ecsw::tolerance, "relative error to stop at")},
+      SelectorEntry<Ecm>{"ecm", "empirical cubature on a basis of the rows",
+                         OptionsOf<Ecm>()
+                             .add("tolerance", &Ecm::tolerance, "relative error on the basis to stop at")
+                             .add("num_modes", &Ecm::num_modes, "rows of the basis; 0: as many as columns")},
+      SelectorEntry<UniformRandom>{"random", "columns at random, weighted: what others have to beat",
+                                   OptionsOf<UniformRandom>()},
+      SelectorEntry<AllColumns>{"all", "all columns, weighted: what none can beat", OptionsOf<AllColumns>()}};
+  return table;
+}
+
+/// Names of the selectors of the table.
+inline const auto selector_names =
+    std::apply([](const auto&... entries) { return std::array{entries.name...}; }, selector_table());
+
+/// A selector with another seed, where it draws at random.
+template <typename Selector>
+Selector seeded(Selector selector, std::uint64_t seed) {
+  if constexpr (requires { selector.seed = seed; }) selector.seed = seed;
+  return selector;
+}
+
+/// Calls use(selector) with the selector of that name in the table, its other options at their defaults.
 /// \throws std::invalid_argument naming the known ones.
 template <typename Use>
 auto with_selector(std::string_view name, std::uint64_t seed, const Use& use) {
-  constexpr double all = std::numeric_limits<double>::infinity();
-  if (name == "nn-sp") return use(NnSp{.seed = seed});
-  if (name == "nn-htp") return use(NnHtp{.seed = seed});
-  if (name == "nn-htp-full") return use(NnHtp{.candidates_per_size = all, .seed = seed});
-  if (name == "htp") return use(Htp{.seed = seed});
-  if (name == "niht") return use(Niht{.seed = seed});
-  if (name == "nn-niht") return use(NnNiht{.seed = seed});
-  if (name == "greedy") return use(GreedyCubature{.seed = seed});
-  if (name == "batched-greedy") return use(BatchedGreedy{.seed = seed});
-  if (name == "nn-omp") return use(NnOmp{.seed = seed});
-  if (name == "ecsw") return use(Ecsw{.seed = seed});
-  if (name == "ecm") return use(Ecm{.seed = seed});
-  if (name == "random") return use(UniformRandom{.seed = seed});
-  if (name == "all") return use(AllColumns{});
+  using Result = decltype(use(NnSp{}));
+  std::optional<Result> result;
   std::string known;
-  for (std::string_view n : selector_names) known += (known.empty() ? "" : ", ") + std::string(n);
-  throw std::invalid_argument("selector is '" + std::string(name) + "', expected one of " + known);
+  std::apply(
+      [&](const auto&... entries) {
+        const auto try_one = [&](const auto& entry) {
+          known += (known.empty() ? "" : ", ") + std::string(entry.name);
+          if (entry.name != name) return false;
+          result.emplace(use(seeded(entry.options.make({}, std::string(name)), seed)));
+          return true;
+        };
+        (void)(try_one(entries) || ...);
+      },
+      selector_table());
+  require(result.has_value(), "selector is '" + std::string(name) + "', expected one of " + known);
+  return *std::move(result);
 }
 
 /// with_selector(name, seed, …)(problem, request).

@@ -73,7 +73,7 @@ TEST(NewtonSolve, ShortensStepsThatWouldDiverge) {
   Vector u = Vector::Constant(2, 3);
   u[1] = -20;
   LuSolver<Matrix> solver;
-  const Report report = newton_solve(equation, solver, u, {.tolerance = 1e-12});
+  const Report report = Newton{}(equation, solver, u, {.tolerance = 1e-12});
   EXPECT_EQ(report.status, Status::Converged);
   EXPECT_TRUE(is_near(u, Vector::Zero(2), 1e-12));
 }
@@ -85,7 +85,7 @@ TEST(NewtonSolve, SolvesEquationsWithoutAPotentialQuadratically) {
       r, [](VectorIn u) -> Matrix { return (Matrix(2, 2) << 0.2 * u[0], -1, 1, std::cos(u[1])).finished(); }};
   Vector u = Vector::Zero(2);
   LuSolver<Matrix> solver;
-  const Report report = newton_solve(equation, solver, u, {.tolerance = 1e-14});
+  const Report report = Newton{}(equation, solver, u, {.tolerance = 1e-14});
   EXPECT_EQ(report.status, Status::Converged);
   EXPECT_LE(report.iterations, 6);
   EXPECT_LT(r(u).norm(), 1e-14);
@@ -96,14 +96,14 @@ TEST(NewtonSolve, SaysWhyItStopped) {
                         [](VectorIn u) -> Matrix { return (2 * u).asDiagonal(); }};
   LuSolver<Matrix> solver;
   Vector u = Vector::Constant(1, 2);
-  EXPECT_NE(newton_solve(no_root, solver, u, {.max_iterations = 30}).status, Status::Converged);
+  EXPECT_NE(Newton{}(no_root, solver, u, {.max_iterations = 30}).status, Status::Converged);
   EXPECT_TRUE(u.allFinite());
   u.setZero();  // J = 0
-  EXPECT_EQ(newton_solve(no_root, solver, u).status, Status::Stagnated);
+  EXPECT_EQ(Newton{}(no_root, solver, u).status, Status::Stagnated);
   u.setConstant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_EQ(newton_solve(no_root, solver, u).status, Status::NotFinite);
+  EXPECT_EQ(Newton{}(no_root, solver, u).status, Status::NotFinite);
   u.setConstant(1e9);
-  EXPECT_EQ(newton_solve(no_root, solver, u, {.max_iterations = 1}).status, Status::MaxIterations);
+  EXPECT_EQ(Newton{}(no_root, solver, u, {.max_iterations = 1}).status, Status::MaxIterations);
 }
 
 }  // namespace

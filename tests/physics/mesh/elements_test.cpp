@@ -180,7 +180,7 @@ TYPED_TEST(ElementTest, AffineBoundaryDisplacementsHaveTheAffineSolution) {
   BoundaryValueProblem<std::remove_cvref_t<decltype(system)>> problem{system, interior, g};
   SpdSolver<Matrix> solver;
   Vector w = interior.restrict(u, 3) + random_vector(interior.num_free() * 3, 0.05 * edge, 5);
-  const Report report = newton_minimize(problem, solver, w, {.tolerance = 1e-13, .max_iterations = 50});
+  const Report report = Newton{}(problem, solver, w, {.tolerance = 1e-13, .max_iterations = 50});
   EXPECT_EQ(report.status, Status::Converged) << to_string(report.status) << ", " << report.residual;
   EXPECT_TRUE(is_near(problem.at(w), u, 1e-11 * edge));  // residual times the condition of the stiffness
 }
@@ -274,10 +274,10 @@ double displacement_error(Index n) {
     const Point b = body_force(material, exact, X);
     for (int a = 0; a < Element::num_nodes; ++a) load.segment<3>(3 * cell[a]) += N[a] * volume * b;
   });
-  Equilibrium problem(system, AffineLoad<SparseMatrix>{system.restrict(load), {}});
+  Equilibrium problem(system, SystemLoad<SparseMatrix>{system.restrict(load), {}});
   SpdSolver<SparseMatrix> solver;
   Vector u = Vector::Zero(system.dim());
-  EXPECT_EQ(newton_minimize(problem, solver, u, {.tolerance = 1e-9}).status, Status::Converged);
+  EXPECT_EQ(Newton{}(problem, solver, u, {.tolerance = 1e-9}).status, Status::Converged);
   const Vector full = system.expand(u);
   double squared = 0;
   for_fine_points<Element>(mesh, [&](const auto& cell, const auto& N, const Point& X, double volume) {

@@ -333,7 +333,7 @@ double relative_tip_deflection(const TriangleMesh& mesh, double edge, double cla
   Equilibrium problem(system, system.project(loads));
   SpdSolver<SparseMatrix> solver;
   Vector u = Vector::Zero(system.dim());
-  const Report report = newton_minimize(problem, solver, u, {.tolerance = 1e-5});
+  const Report report = Newton{}(problem, solver, u, {.tolerance = 1e-5});
   EXPECT_EQ(report.status, Status::Converged) << report.residual;
   const Vector full = system.expand(u);
   double deflection = 0;

@@ -294,12 +294,12 @@ TEST(ElasticRod, SmallDeflectionsAreThoseOfEulerAndBernoulli) {
 // Runge and Kutta with 1000 steps and bisection for θ'(0); Mattiasson 1981 has 0.38763 and 0.71379.
 TEST(ElasticRod, LargeDeflectionsAreThoseOfTheElastica) {
   const Cantilever beam{.n = 60};
-  Equilibrium problem(beam.system, AffineLoad<SparseMatrix>{Vector::Zero(beam.system.dim()), {}});
+  Equilibrium problem(beam.system, SystemLoad<SparseMatrix>{Vector::Zero(beam.system.dim()), {}});
   SpdSolver<SparseMatrix> solver;
   Vector u = Vector::Zero(beam.system.dim());
   for (const double P : {0.5, 1.5, 3.0, 5.0}) {
-    Equilibrium loaded(beam.system, AffineLoad<SparseMatrix>{beam.tip_load(P), {}});
-    ASSERT_EQ(newton_minimize(loaded, solver, u, {.tolerance = 1e-8, .max_iterations = 200}).status, Status::Converged);
+    Equilibrium loaded(beam.system, SystemLoad<SparseMatrix>{beam.tip_load(P), {}});
+    ASSERT_EQ(Newton{}(loaded, solver, u, {.tolerance = 1e-8, .max_iterations = 200}).status, Status::Converged);
   }
   const Point tip = u.tail<3>();
   EXPECT_TRUE(is_near(tip, Point(-0.3876283607, 0.7137915236, 0), 2e-4));  // 1 / n² times a half

@@ -108,7 +108,7 @@ TYPED_TEST(TetElasticityTest, AffineBoundaryDisplacementsHaveTheAffineSolution) 
   BoundaryValueProblem<FullSystem<typename TestFixture::Model>> problem{this->system, interior, g};
   SpdSolver<Matrix> solver;
   Vector w = interior.restrict(u, 3) + random_vector(interior.num_free() * 3, 0.1 * edge, 5);
-  const Report report = newton_minimize(problem, solver, w, {.tolerance = 1e-13, .max_iterations = 50});
+  const Report report = Newton{}(problem, solver, w, {.tolerance = 1e-13, .max_iterations = 50});
   EXPECT_EQ(report.status, Status::Converged) << to_string(report.status) << ", " << report.residual;
   EXPECT_TRUE(is_near(problem.at(w), u, 1e-11 * edge));  // residual times the condition of the stiffness
 }

@@ -22,7 +22,7 @@ struct PulledBar {
                 lumped_mass(mesh, 1000.0), nodes_where(mesh, [](const Point& x) { return x[0] < 0.05; })};
   Index end = nodes_where(mesh, [](const Point& x) { return x[0] > 0.35 && x[1] > 0.05 && x[2] > 0.05; })[0];
 
-  AffineLoad<SparseMatrix> load(double aside) const {
+  SystemLoad<SparseMatrix> load(double aside) const {
     return system.project({.springs = {{end, 500.0, Point(0, aside, 0)}}});
   }
 };
@@ -31,14 +31,14 @@ TEST(StaticSolver, MethodsAgreeOnAnEquilibrium) {
   const PulledBar bar;
   StaticSolver newton(bar.system, {.tolerance = 1e-9});
   Vector u = Vector::Zero(bar.system.dim());
-  const StaticReport reference = newton.solve(bar.load(0.13), u);
+  const SolveReport reference = newton.solve(bar.load(0.13), u);
   ASSERT_EQ(reference.status, Status::Converged);
   EXPECT_GT(u.lpNorm<Eigen::Infinity>(), 0.08) << "a large deformation";
   EXPECT_EQ(reference.tangents, reference.iterations);
   for (const Index refresh : {Index{0}, Index{12}}) {
-    StaticSolver bfgs(bar.system, {.method = StaticMethod::Bfgs, .tolerance = 1e-9, .refresh_after = refresh});
+    StaticSolver bfgs(bar.system, {.solver = LineSearchBfgs{.refresh_after = refresh}, .tolerance = 1e-9});
     Vector w = Vector::Zero(bar.system.dim());
-    const StaticReport report = bfgs.solve(bar.load(0.13), w);
+    const SolveReport report = bfgs.solve(bar.load(0.13), w);
     EXPECT_EQ(report.status, Status::Converged) << to_string(report.status) << ", " << report.residual;
     EXPECT_TRUE(is_near(w, u, 1e-6 * u.norm()));
     EXPECT_EQ(report.tangents > 0, refresh > 0);
@@ -47,13 +47,13 @@ TEST(StaticSolver, MethodsAgreeOnAnEquilibrium) {
 
 TEST(StaticSolver, StartsFromTheLastEquilibriumAsLoadsMove) {
   const PulledBar bar;
-  StaticSolver bfgs(bar.system, {.method = StaticMethod::Bfgs});
+  StaticSolver bfgs(bar.system, {.solver = LineSearchBfgs{}});
   Vector u = Vector::Zero(bar.system.dim());
   const Index far = bfgs.solve(bar.load(0.1), u).iterations, near = bfgs.solve(bar.load(0.101), u).iterations;
   EXPECT_LT(near, far);
   EXPECT_EQ(bfgs.solve(bar.load(0.101), u).iterations, 0);
   // springs that change make it prepare anew
-  const AffineLoad<SparseMatrix> stiffer = bar.system.project({.springs = {{bar.end, 5000.0, Point(0, 0.1, 0)}}});
+  const SystemLoad<SparseMatrix> stiffer = bar.system.project({.springs = {{bar.end, 5000.0, Point(0, 0.1, 0)}}});
   EXPECT_EQ(bfgs.solve(stiffer, u).status, Status::Converged);
   Vector f(u.size());
   bar.system.force(u, f);
@@ -63,8 +63,8 @@ TEST(StaticSolver, StartsFromTheLastEquilibriumAsLoadsMove) {
 
 TEST(StaticSolver, LeavesAnUnloadedBodyWhereItIs) {
   const PulledBar bar;
-  for (const StaticMethod method : {StaticMethod::Newton, StaticMethod::Bfgs}) {
-    StaticSolver solver(bar.system, {.method = method});
+  for (const NonlinearSolver& method : {NonlinearSolver(Newton{}), NonlinearSolver(LineSearchBfgs{})}) {
+    StaticSolver solver(bar.system, {.solver = method});
     Vector u = Vector::Zero(bar.system.dim());
     EXPECT_EQ(solver.solve({Vector::Zero(u.size()), {}}, u).iterations, 0);
     EXPECT_TRUE(u.isZero(0));
@@ -77,7 +77,7 @@ TEST(StaticSolver, EscapesAnUnstableEquilibrium) {
   Loads squeeze;
   for (const Index v : nodes_where(bar.mesh, [](const Point& x) { return x[0] > 0.35; }))
     squeeze.forces.push_back({v, Point(-40, 0.01, 0)});
-  const AffineLoad<SparseMatrix> load = bar.system.project(squeeze);
+  const SystemLoad<SparseMatrix> load = bar.system.project(squeeze);
   StaticSolver newton(bar.system);
   Vector u = Vector::Zero(bar.system.dim());
   ASSERT_EQ(newton.solve(load, u).status, Status::Converged);
@@ -101,13 +101,13 @@ struct FailingWell {
     K = Matrix::Constant(1, 1, fails && u[0] != 0 ? std::nan("") : std::cosh(u[0]));
   }
   const Matrix& rest_stiffness() const { return K0; }
-  AffineLoad<Matrix> project(const Loads&) const { return {Vector::Zero(1), {}}; }
+  SystemLoad<Matrix> project(const Loads&) const { return {Vector::Zero(1), {}}; }
 };
 
 TEST(StaticSolver, GoesOnAfterATangentThatFailed) {
   FailingWell well;
-  StaticSolver solver(well, {.method = StaticMethod::Bfgs, .refresh_after = 1});
-  const AffineLoad<Matrix> load{Vector::Constant(1, 50.0), {}};
+  StaticSolver solver(well, {.solver = LineSearchBfgs{.refresh_after = 1}});
+  const SystemLoad<Matrix> load{Vector::Constant(1, 50.0), {}};
   Vector u = Vector::Zero(1);
   well.fails = true;
   EXPECT_NE(solver.solve(load, u).status, Status::Converged);
@@ -123,7 +123,7 @@ TEST(StaticSolver, RefusesWhatMakesNoSense) {
   StaticSolver solver(bar.system);
   Vector u = Vector::Zero(5);
   EXPECT_THROW((void)solver.solve(bar.load(0.1), u), std::invalid_argument);
-  StaticSolver nlopt(bar.system, {.method = StaticMethod::Nlopt});
+  StaticSolver nlopt(bar.system, {.solver = Nlopt{}});
   Vector w = Vector::Zero(bar.system.dim());
   EXPECT_THROW((void)nlopt.solve(bar.load(0.1), w), std::invalid_argument);
   w.setConstant(std::nan(""));
@@ -152,7 +152,7 @@ TEST(Bfgs, MinimisesRosenbrocksFunction) {
   ASSERT_TRUE(solver.factorize(Matrix::Identity(2, 2)));
   Vector x(2);
   x << -1.2, 1;
-  const BfgsReport report = bfgs_minimize(objective, solver, x, {.tolerance = 1e-10});
+  const SolveReport report = LineSearchBfgs{}(objective, solver, x, {.tolerance = 1e-10, .max_iterations = 200});
   EXPECT_EQ(report.status, Status::Converged);
   EXPECT_TRUE(is_near(x, Vector::Ones(2), 1e-8));
   EXPECT_LT(report.iterations, 60);  // some 35 in the literature
@@ -185,8 +185,8 @@ TEST(Bfgs, FindsAQuadraticsMinimumInAsManyStepsAsItHasUnknowns) {
   SpdSolver<Matrix> exact, identity;
   ASSERT_TRUE(exact.factorize(objective.A) && identity.factorize(Matrix::Identity(8, 8)));
   Vector x = Vector::Zero(8), y = x;
-  EXPECT_EQ(bfgs_minimize(objective, exact, x, {.tolerance = 1e-12}).iterations, 1);
-  EXPECT_LT(bfgs_minimize(objective, identity, y, {.tolerance = 1e-10}).iterations, 25);
+  EXPECT_EQ(LineSearchBfgs{}(objective, exact, x, {.tolerance = 1e-12}).iterations, 1);
+  EXPECT_LT(LineSearchBfgs{}(objective, identity, y, {.tolerance = 1e-10}).iterations, 25);
   EXPECT_TRUE(is_near(y, x, 1e-8));
 }
 

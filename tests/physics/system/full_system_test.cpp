@@ -182,7 +182,7 @@ TEST(FullSystem, FixedNodesCutTheirComponentsOff) {
 
 TEST(FullSystem, LoadsOnFixedNodesDoNothing) {
   const FullSystem<DuffingOscillators> system(DuffingSet::make(), DuffingSet::nodal_mass(), {0, 4});
-  const AffineLoad<SparseMatrix> load =
+  const SystemLoad<SparseMatrix> load =
       system.project({.gravity = Point::Zero(), .forces = {{0, {1, 2, 3}}}, .springs = {{4, 5, {1, 1, 1}}}});
   EXPECT_TRUE(is_same(load.force, Vector::Zero(system.dim())));
   EXPECT_FALSE(load.has_stiffness());

@@ -35,7 +35,7 @@ double integrate(const Logistic& system, FirstOrderMethod method, double u0, dou
                  const std::function<double(double)>& q) {
   FirstOrderIntegrator integrator(system, h, {.method = method, .tolerance = 1e-13});
   FirstOrderState state{Vector::Constant(1, u0), Vector::Zero(1)};
-  const auto load = [&](double time) { return AffineLoad<Matrix>{Vector::Constant(1, q(time)), {}}; };
+  const auto load = [&](double time) { return SystemLoad<Matrix>{Vector::Constant(1, q(time)), {}}; };
   integrator.balance(load(0), state);
   for (Index i = 0; i < n; ++i) {
     const Report report = integrator.step(load(state.time + h), state);
@@ -94,7 +94,7 @@ TEST(FirstOrderIntegrator, Bdf2IsExactForParabolasWithStepsThatChange) {
   for (const double h : {0.5, 2.0, 0.1}) {
     const double t = state.time + h;
     FirstOrderIntegrator integrator(system, h, {.tolerance = 1e-14});
-    const AffineLoad<Matrix> load{Vector::Constant(1, 4 * t + 0.7 * t * t), {}};
+    const SystemLoad<Matrix> load{Vector::Constant(1, 4 * t + 0.7 * t * t), {}};
     ASSERT_EQ(integrator.step(load, state).status, Status::Converged);
     EXPECT_NEAR(state.u[0], t * t, 1e-12 * t * t);
     EXPECT_NEAR(state.u_dot[0], 2 * t, 1e-11 * t);
@@ -185,7 +185,7 @@ TEST(FirstOrderIntegrator, RefusesWhatDoesNotFit) {
   EXPECT_THROW(FirstOrderIntegrator(system, 1, {.tolerance = 0}), std::invalid_argument);
   FirstOrderIntegrator integrator(system, 1);
   FirstOrderState state = FirstOrderState::at_rest(1), two = FirstOrderState::at_rest(2);
-  const AffineLoad<Matrix> load{Vector::Zero(1), {}}, wrong{Vector::Zero(2), {}};
+  const SystemLoad<Matrix> load{Vector::Zero(1), {}}, wrong{Vector::Zero(2), {}};
   EXPECT_THROW((void)integrator.step(wrong, state), std::invalid_argument);
   EXPECT_THROW((void)integrator.step(load, two), std::invalid_argument);
   state.u_before = Vector::Zero(1);  // at time 0, as this one

@@ -26,7 +26,7 @@ constexpr double pi = std::numbers::pi;
 Oscillator oscillator(double m, double k, double c = 0) {
   return {DuffingOscillators(1, k, c), Vector::Constant(1, m)};
 }
-AffineLoad<SparseMatrix> no_load(Index dim) {
+SystemLoad<SparseMatrix> no_load(Index dim) {
   return {Vector::Zero(dim), {}};
 }
 
@@ -47,9 +47,9 @@ State swinging(const System& system) {
 }
 
 template <typename System>
-State run(const System& system, State state, const AffineLoad<SparseMatrix>& load, double duration, Index steps,
-          NewmarkOptions options = {}) {
-  Newmark newmark(system, duration / static_cast<double>(steps), options);
+State run(const System& system, State state, const SystemLoad<SparseMatrix>& load, double duration, Index steps,
+          StepOptions options = {}, NewmarkParameters parameters = {}) {
+  Newmark newmark(system, duration / static_cast<double>(steps), options, parameters);
   newmark.balance(load, state);
   for (Index k = 0; k < steps; ++k) {
     const StepReport report = newmark.step(load, state);
@@ -59,7 +59,7 @@ State run(const System& system, State state, const AffineLoad<SparseMatrix>& loa
   return state;
 }
 
-constexpr std::array every_solver{NonlinearSolver::Newton, NonlinearSolver::Bfgs, NonlinearSolver::Broyden};
+const std::array<NonlinearSolver, 3> every_solver{Newton{}, Bfgs{}, Broyden{}};
 
 /// log₂ of the ratio of errors between step sizes h, h/2 and h/4.
 template <typename Run>
@@ -73,13 +73,14 @@ TEST(Newmark, AverageAccelerationIsOfSecondOrderOnANonlinearOscillator) {
   State start = State::at_rest(3);
   start.v << 0.7, -0.4, 0.2;
   for (const auto& [solver, beta] :
-       {std::pair(NonlinearSolver::Newton, 0.25), std::pair(NonlinearSolver::Bfgs, 0.25),
-        std::pair(NonlinearSolver::Broyden, 0.25), std::pair(NonlinearSolver::Newton, 1.0 / 6)}) {
-    NewmarkOptions options{.tolerance = tight};
+       {std::pair(NonlinearSolver(Newton{}), 0.25), std::pair(NonlinearSolver(Bfgs{}), 0.25),
+        std::pair(NonlinearSolver(Broyden{}), 0.25), std::pair(NonlinearSolver(Newton{}), 1.0 / 6)}) {
+    StepOptions options{.tolerance = tight};
     options.solver = solver;
-    options.beta = beta;
-    const auto positions = [&](Index steps) { return run(system, start, no_load(3), 0.5, steps, options).u; };
-    const auto velocities = [&](Index steps) { return run(system, start, no_load(3), 0.5, steps, options).v; };
+    const NewmarkParameters parameters{.beta = beta};
+    const auto at_end = [&](Index steps) { return run(system, start, no_load(3), 0.5, steps, options, parameters); };
+    const auto positions = [&](Index steps) { return at_end(steps).u; };
+    const auto velocities = [&](Index steps) { return at_end(steps).v; };
     EXPECT_NEAR(order(positions, 100), 2, 0.1);
     EXPECT_NEAR(order(velocities, 100), 2, 0.1);
   }
@@ -87,9 +88,9 @@ TEST(Newmark, AverageAccelerationIsOfSecondOrderOnANonlinearOscillator) {
 
 TEST(Newmark, IsOfSecondOrderOnABarWithDampingGravityAndASpring) {
   const StvkSystem system = bar();
-  const AffineLoad<SparseMatrix> load =
+  const SystemLoad<SparseMatrix> load =
       system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {{3, 30, {0.05, 0.1, 0}}}});
-  NewmarkOptions options{.tolerance = tight};
+  StepOptions options{.tolerance = tight};
   options.damping = {.alpha = 0.5, .beta = 2e-3};
   const auto positions = [&](Index steps) { return run(system, swinging(system), load, 0.16, steps, options).u; };
   ASSERT_GT(positions(50).lpNorm<Eigen::Infinity>(), 0.05) << "the motion is to be nonlinear";
@@ -100,10 +101,9 @@ TEST(Newmark, GammaAboveOneHalfIsOfFirstOrder) {
   const Oscillator system = oscillator(2, 40, 9000);
   State start = State::at_rest(3);
   start.v << 0.7, -0.4, 0.2;
-  NewmarkOptions options{.tolerance = tight};
-  options.gamma = 0.6;
-  options.beta = 0.3025;
-  const auto positions = [&](Index steps) { return run(system, start, no_load(3), 0.5, steps, options).u; };
+  StepOptions options{.tolerance = tight};
+  const NewmarkParameters parameters{.beta = 0.3025, .gamma = 0.6};
+  const auto positions = [&](Index steps) { return run(system, start, no_load(3), 0.5, steps, options, parameters).u; };
   EXPECT_NEAR(order(positions, 400), 1, 0.1);
 }
 
@@ -131,14 +131,13 @@ TEST(Newmark, FollowsTheClosedFormOfAHarmonicOscillatorAndKeepsItsEnergy) {
 TEST(Newmark, NumericalDampingTakesEnergyAwayAndGammaOneHalfDoesNot) {
   const StvkSystem system = bar();
   const auto energy_after = [&](double gamma, double amplitude) {
-    NewmarkOptions options{.tolerance = 1e-9};
-    options.gamma = gamma;
-    options.beta = (gamma + 0.5) * (gamma + 0.5) / 4;
+    StepOptions options{.tolerance = 1e-9};
+    const NewmarkParameters parameters{.beta = (gamma + 0.5) * (gamma + 0.5) / 4, .gamma = gamma};
     State start = swinging(system);
     start.v *= amplitude;
     const Newmark newmark(system, 1.0, options);
     const double before = newmark.energy(start);
-    return newmark.energy(run(system, start, no_load(system.dim()), 0.3, 100, options)) / before;
+    return newmark.energy(run(system, start, no_load(system.dim()), 0.3, 100, options, parameters)) / before;
   };
   EXPECT_NEAR(energy_after(0.5, 1e-4), 1, 1e-4);  // nearly linear: conserved, up to strains
   EXPECT_LT(energy_after(0.7, 1e-4), 0.99);
@@ -162,7 +161,7 @@ TEST(Newmark, DampedVibrationDecaysAsRayleighSays) {
       };
       State start = State::at_rest(system.dim());
       start.u = amplitude * phi;
-      NewmarkOptions options{.tolerance = 1e-7};
+      StepOptions options{.tolerance = 1e-7};
       options.damping = damping;
       const auto error = [&](Index steps) {
         const State end = run(system, start, no_load(system.dim()), duration, steps, options);
@@ -184,9 +183,9 @@ TEST(Newmark, SpringsPullToTheClosedFormEquilibrium) {
   const Oscillator system = oscillator(1, 50);
   Loads loads{
       .gravity = {0, -9.81, 0}, .forces = {{0, {1, 0, 0}}}, .springs = {{0, 30, {0.2, 0, 0}}, {0, 20, {0, 0, 0.4}}}};
-  NewmarkOptions options;
+  StepOptions options;
   options.damping.alpha = 2 * std::sqrt(100.0);  // critical, with all springs
-  for (const NonlinearSolver solver : every_solver) {
+  for (const NonlinearSolver& solver : every_solver) {
     options.solver = solver;
     options.tolerance = 1e-10;
     const State end = run(system, State::at_rest(3), system.project(loads), 5, 200, options);
@@ -197,15 +196,15 @@ TEST(Newmark, SpringsPullToTheClosedFormEquilibrium) {
 
 TEST(Newmark, SpringsThatComeAndGoAreFollowed) {
   const Oscillator system = oscillator(1, 50);
-  NewmarkOptions options{.tolerance = 1e-10};
+  StepOptions options{.tolerance = 1e-10};
   options.damping.alpha = 15;
-  options.solver = NonlinearSolver::Bfgs;
+  options.solver = Bfgs{};
   Newmark newmark(system, 0.05, options);
   State state = State::at_rest(3);
   for (const double k : {0.0, 150.0, 400.0, 0.0, 30.0}) {
     Loads loads;
     if (k > 0) loads.springs = {{0, k, {0.3, 0, 0}}};
-    const AffineLoad<SparseMatrix> load = system.project(loads);
+    const SystemLoad<SparseMatrix> load = system.project(loads);
     for (int i = 0; i < 200; ++i) {
       const StepReport report = newmark.step(load, state);
       ASSERT_EQ(report.status, Status::Converged);
@@ -217,13 +216,13 @@ TEST(Newmark, SpringsThatComeAndGoAreFollowed) {
 
 TEST(Newmark, BalanceSolvesTheEquationOfMotion) {
   const StvkSystem system = bar();
-  NewmarkOptions options;
+  StepOptions options;
   options.damping = {.alpha = 0.4, .beta = 3e-3};
   const Newmark newmark(system, 0.01, options);
   State state = State::at_rest(system.dim());
   state.u = random_vector(system.dim(), 0.01, 1);
   state.v = random_vector(system.dim(), 0.5, 2);
-  const AffineLoad<SparseMatrix> load =
+  const SystemLoad<SparseMatrix> load =
       system.project({.gravity = {0, 0, -9.81}, .forces = {{3, {0, 5, 0}}}, .springs = {{7, 300, {0.1, 0, 0}}}});
   newmark.balance(load, state);
   const Vector f = system.force(state.u) + load.stiffness * state.u;
@@ -233,11 +232,11 @@ TEST(Newmark, BalanceSolvesTheEquationOfMotion) {
 
 TEST(Newmark, TheReportedResidualIsThatOfTheEquationOfMotion) {
   const StvkSystem system = bar();
-  const AffineLoad<SparseMatrix> load =
+  const SystemLoad<SparseMatrix> load =
       system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {{3, 500, {0.05, 0.1, 0}}}});
-  for (const NonlinearSolver solver : every_solver)
+  for (const NonlinearSolver& solver : every_solver)
     for (const RayleighDamping damping : {RayleighDamping{}, {50, 0.1}}) {
-      NewmarkOptions options{.tolerance = 1e-5};
+      StepOptions options{.tolerance = 1e-5};
       options.solver = solver;
       options.damping = damping;
       const double h = 0.02;
@@ -266,10 +265,10 @@ TEST(Newmark, TheReportedResidualIsThatOfTheEquationOfMotion) {
 
 TEST(Newmark, SolversTakeTheSameTrajectory) {
   const StvkSystem system = bar();
-  const AffineLoad<SparseMatrix> load = system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {}});
-  NewmarkOptions options{.tolerance = 1e-9};
+  const SystemLoad<SparseMatrix> load = system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {}});
+  StepOptions options{.tolerance = 1e-9};
   const State newton = run(system, swinging(system), load, 0.2, 20, options);
-  for (const NonlinearSolver solver : {NonlinearSolver::Bfgs, NonlinearSolver::Broyden}) {
+  for (const NonlinearSolver& solver : {NonlinearSolver(Bfgs{}), NonlinearSolver(Broyden{})}) {
     options.solver = solver;
     const State other = run(system, swinging(system), load, 0.2, 20, options);
     EXPECT_TRUE(is_near(other.u, newton.u, 1e-6));
@@ -279,10 +278,10 @@ TEST(Newmark, SolversTakeTheSameTrajectory) {
 
 TEST(Newmark, BfgsLearnsFromStepToStep) {
   const StvkSystem system = bar();
-  const AffineLoad<SparseMatrix> load = system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {}});
+  const SystemLoad<SparseMatrix> load = system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {}});
   const auto iterations = [&](bool forgetful) {
-    NewmarkOptions options{.tolerance = 1e-9};
-    options.solver = NonlinearSolver::Bfgs;
+    StepOptions options{.tolerance = 1e-9};
+    options.solver = Bfgs{};
     State state = swinging(system);
     std::optional<Newmark<StvkSystem>> newmark;
     Index sum = 0;
@@ -304,11 +303,11 @@ TEST(Newmark, AllSolversSurviveASpringThatPullsASingleNodeHard) {
   const StvkSystem system(
       TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e6, .poisson = 0.4})),
       lumped_mass(mesh, 1000.0), nodes_where(mesh, [](const Point& x) { return x[0] < 0.05; }));
-  const AffineLoad<SparseMatrix> load = system.project(
+  const SystemLoad<SparseMatrix> load = system.project(
       {.gravity = {0, 0, -9.81}, .forces = {}, .springs = {{mesh.num_nodes() - 1, 1000, {0.05, 0.1, 0}}}});
-  NewmarkOptions options{.tolerance = 1e-8};
+  StepOptions options{.tolerance = 1e-8};
   const State newton = run(system, State::at_rest(system.dim()), load, 0.4, 8, options);
-  for (const NonlinearSolver solver : {NonlinearSolver::Bfgs, NonlinearSolver::Broyden}) {
+  for (const NonlinearSolver& solver : {NonlinearSolver(Bfgs{}), NonlinearSolver(Broyden{})}) {
     options.solver = solver;
     const State other = run(system, State::at_rest(system.dim()), load, 0.4, 8, options);
     EXPECT_TRUE(is_near(other.u, newton.u, 1e-5));
@@ -345,8 +344,8 @@ TEST(Newmark, ABodyAtRestAnywhereIsConverged) {
   const StvkSystem system(
       TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e6, .poisson = 0.3})),
       lumped_mass(mesh, 1000.0));
-  for (const NonlinearSolver solver : every_solver) {
-    NewmarkOptions options;
+  for (const NonlinearSolver& solver : every_solver) {
+    StepOptions options;
     options.solver = solver;
     Newmark newmark(system, 0.01, options);
     State state = State::at_rest(system.dim());
@@ -368,14 +367,14 @@ TEST(Newmark, NumberOfThreadsDoesNotChangeABit) {
   const StvkSystem system(
       TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.4})),
       lumped_mass(mesh, 1000.0), nodes_where(mesh, [](const Point& x) { return x[0] < 0.05; }));
-  const AffineLoad<SparseMatrix> load = system.project(
+  const SystemLoad<SparseMatrix> load = system.project(
       {.gravity = {0, 0, -9.81}, .forces = {}, .springs = {{mesh.num_nodes() - 1, 500, {0.05, 0.1, 0}}}});
   const int before = num_threads();
-  for (const NonlinearSolver solver : every_solver) {
+  for (const NonlinearSolver& solver : every_solver) {
     std::vector<State> ends;
     for (const int threads : {1, 2}) {
       set_num_threads(threads);
-      NewmarkOptions options;
+      StepOptions options;
       options.solver = solver;
       options.damping = {.alpha = 0.1, .beta = 1e-3};
       ends.push_back(run(system, State::at_rest(system.dim()), load, 0.2, 4, options));
@@ -389,12 +388,12 @@ TEST(Newmark, NumberOfThreadsDoesNotChangeABit) {
 
 TEST(Newmark, NotFiniteInputEndsTheStepAndLeavesTheState) {
   const StvkSystem system = bar();
-  for (const NonlinearSolver solver : every_solver) {
-    NewmarkOptions options;
+  for (const NonlinearSolver& solver : every_solver) {
+    StepOptions options;
     options.solver = solver;
     Newmark newmark(system, 0.01, options);
     for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-      AffineLoad<SparseMatrix> load = no_load(system.dim());
+      SystemLoad<SparseMatrix> load = no_load(system.dim());
       State state = swinging(system), before = state;
       load.force[2] = bad;
       EXPECT_EQ(newmark.step(load, state).status, Status::NotFinite);
@@ -421,8 +420,8 @@ TEST(Newmark, APredictorThatInvertsTetsIsNotTheEnd) {
   for (Index f = 0; f < system.numbering().num_free(); ++f)
     start.v[3 * f] = -6.0 * static_cast<double>(system.numbering().free_nodes()[f] % 4);
   ASSERT_FALSE(system.force(0.02 * start.v).allFinite()) << "the test needs a predictor that is undefined";
-  for (const NonlinearSolver solver : every_solver) {
-    NewmarkOptions options;
+  for (const NonlinearSolver& solver : every_solver) {
+    StepOptions options;
     options.solver = solver;
     Newmark newmark(system, 0.02, options);
     State state = start;
@@ -435,9 +434,9 @@ TEST(Newmark, APredictorThatInvertsTetsIsNotTheEnd) {
 
 TEST(Newmark, ReportsWhenIterationsDoNotSuffice) {
   const StvkSystem system = bar();
-  const AffineLoad<SparseMatrix> load = system.project({.gravity = {0, 0, -500}, .forces = {}, .springs = {}});
-  for (const NonlinearSolver solver : every_solver) {
-    NewmarkOptions options{.tolerance = 1e-12, .max_iterations = 1};
+  const SystemLoad<SparseMatrix> load = system.project({.gravity = {0, 0, -500}, .forces = {}, .springs = {}});
+  for (const NonlinearSolver& solver : every_solver) {
+    StepOptions options{.tolerance = 1e-12, .max_iterations = 1};
     options.solver = solver;
     Newmark newmark(system, 0.1, options);
     State state = State::at_rest(system.dim());
@@ -453,16 +452,14 @@ TEST(Newmark, MistakesOfTheCallerThrow) {
   const Oscillator system = oscillator(1, 1);
   for (const double h : {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
     EXPECT_THROW(Newmark(system, h), std::invalid_argument) << h;
-  NewmarkOptions explicit_method;
-  explicit_method.beta = 0;
-  EXPECT_THROW(Newmark(system, 0.1, explicit_method), std::invalid_argument);
+  EXPECT_THROW(Newmark(system, 0.1, {}, {.beta = 0}), std::invalid_argument);
 
   EXPECT_THROW(Newmark(system, 0.1, {.tolerance = 0}), std::invalid_argument);
 
   Newmark newmark(system, 0.1);
   State state = State::at_rest(3);
   EXPECT_THROW((void)newmark.step(no_load(4), state), std::invalid_argument);
-  AffineLoad<SparseMatrix> wrong_stiffness{Vector::Zero(3), SparseMatrix(4, 4)};
+  SystemLoad<SparseMatrix> wrong_stiffness{Vector::Zero(3), SparseMatrix(4, 4)};
   EXPECT_THROW((void)newmark.step(wrong_stiffness, state), std::invalid_argument);
   EXPECT_THROW(newmark.balance(no_load(2), state), std::invalid_argument);
   for (Vector State::*member : {&State::u, &State::v, &State::a}) {

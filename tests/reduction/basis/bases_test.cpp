@@ -15,7 +15,7 @@ namespace supple::test {
 /// Random displacements of all nodes, zero at fixed ones.
 template <typename System>
 Matrix random_snapshots(const System& system, Index rank, Index count) {
-  const RestState rest = rest_state(system);
+  const RestState rest = system.rest_state();
   return rest.expand(random_matrix(system.dim(), rank, 0.1, 8)) * random_matrix(rank, count, 1, 9);
 }
 
@@ -77,7 +77,7 @@ std::string message(const Call& call) {
 
 /// Σ_t ‖u_t − U Uᵀ M u_t‖²_M.
 double squared_error(const DenseBasis& basis, const StvkBar& system, const Matrix& snapshots) {
-  const Vector mass = rest_state(system).mass_of_rows();
+  const Vector mass = system.rest_state().mass_of_rows();
   const Matrix U = basis.dense();
   const Matrix rest = snapshots - U * (U.transpose() * (mass.asDiagonal() * snapshots));
   return (mass.cwiseSqrt().asDiagonal() * rest).squaredNorm();
@@ -138,7 +138,7 @@ TEST(PcaBasis, RefusesSnapshotsThatDoNotFit) {
 
 TEST(SkinningModes, HaveAscendingEnergies) {
   for (const StvkBar& system : {clamped_bar(), free_bar(), free_bars()}) {
-    const RestState rest = rest_state(system);
+    const RestState rest = system.rest_state();
     const Index num_free =
         static_cast<Index>(find_free_components(rest.stencils, rest.stencil_size, rest.numbering).free.size());
     const SkinningWeights weights = SkinningModes{.num_weights = 8}.weights(rest);

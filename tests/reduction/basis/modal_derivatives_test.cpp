@@ -66,7 +66,7 @@ Vector from_tangents(const System& system, const Vector& x, const Vector& y, dou
 
 TEST(ForceCurvature, IsTheQuadraticPartOfStVenantKirchhoff) {
   const StvkBar system = free_bar();
-  const RestState rest = rest_state(system);
+  const RestState rest = system.rest_state();
   const ForceCurvature H(rest);
   const TetMesh mesh = bar_mesh();
   const auto material = StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.35});
@@ -92,7 +92,7 @@ TEST(ForceCurvature, IsTheQuadraticPartOfStVenantKirchhoff) {
 
 template <typename System>
 void check_against_tangents(const System& system, double accuracy) {
-  const RestState rest = rest_state(system);
+  const RestState rest = system.rest_state();
   const ForceCurvature H(rest);
   const FreeComponents components = find_free_components(rest.stencils, rest.stencil_size, rest.numbering);
   const VibrationModes modes = vibration_modes(system, {.num_modes = components.num_rigid_modes() + 4});
@@ -136,7 +136,7 @@ TEST(ForceCurvature, ShortensItsStepWhereForcesEnd) {
   using System = FullSystem<TetElasticity<MooneyRivlin>>;
   const System system(TetElasticity<MooneyRivlin>(mesh, MooneyRivlin<double>::from({.young = 1e5, .poisson = 0.35})),
                       lumped_mass(mesh, 1000.0), {});
-  const RestState rest = rest_state(system);
+  const RestState rest = system.rest_state();
   const ForceCurvature H(rest);
   Vector x = Vector::Zero(12);
   x[11] = 1;
@@ -149,7 +149,7 @@ TEST(ForceCurvature, ShortensItsStepWhereForcesEnd) {
 
 TEST(ForceCurvature, OfNothingIsNothing) {
   const StvkBar system = clamped_bar();
-  const RestState rest = rest_state(system);
+  const RestState rest = system.rest_state();
   const ForceCurvature H(rest);
   EXPECT_TRUE(H(Vector::Zero(system.dim())).isZero(0));
   EXPECT_THROW((void)H(Vector::Zero(system.dim() + 3)), std::invalid_argument);
@@ -158,7 +158,7 @@ TEST(ForceCurvature, OfNothingIsNothing) {
 
 TEST(ModalDerivatives, AreTheSecondDerivativesOfStaticSolutions) {
   const StvkBar system = clamped_bar();
-  const RestState rest = rest_state(system);
+  const RestState rest = system.rest_state();
   const VibrationModes modes = vibration_modes(system, {.num_modes = 3});
   const ModalDerivativeVectors derivatives = modal_derivatives(rest, modes);
   ASSERT_EQ(derivatives.pairs.size(), 6u);
@@ -169,7 +169,7 @@ TEST(ModalDerivatives, AreTheSecondDerivativesOfStaticSolutions) {
   const auto statics = [&](const Vector& linear) -> Vector {
     Equilibrium<StvkBar> equilibrium(system, {system.rest_stiffness() * linear, {}}, 1e-11);
     Vector u = linear;
-    EXPECT_EQ(newton_minimize(equilibrium, solver, u, {.tolerance = 1e-11}).status, Status::Converged);
+    EXPECT_EQ(Newton{}(equilibrium, solver, u, {.tolerance = 1e-11}).status, Status::Converged);
     return u;
   };
   for (std::size_t p = 0; p < derivatives.pairs.size(); ++p) {
@@ -194,7 +194,7 @@ TEST(ModalDerivatives, AreTheSecondDerivativesOfStaticSolutions) {
 // x(q) with K(q φⱼ) x = ωᵢ² M φᵢ, and dx/dq at q = 0 is the derivative θᵢⱼ with inertia frozen.
 TEST(ModalDerivatives, AreTheLimitOfFiniteDifferencesOfModes) {
   const StvkBar system = clamped_bar();
-  const RestState rest = rest_state(system);
+  const RestState rest = system.rest_state();
   const VibrationModes modes = vibration_modes(system, {.num_modes = 4});
   const ModalDerivativeVectors derivatives = modal_derivatives(rest, modes);
   const ForceCurvature H(rest);
@@ -218,7 +218,7 @@ TEST(ModalDerivatives, AreTheLimitOfFiniteDifferencesOfModes) {
 
 TEST(ModalDerivatives, OfFreeObjectsAreOrthogonalToRigidMotions) {
   for (const StvkBar& system : {free_bar(), clamped_and_free_bars(), free_bars()}) {
-    const RestState rest = rest_state(system);
+    const RestState rest = system.rest_state();
     const FreeComponents components = find_free_components(rest.stencils, rest.stencil_size, rest.numbering);
     const VibrationModes modes = vibration_modes(system, {.num_modes = components.num_rigid_modes() + 3});
     const ModalDerivativeVectors derivatives = modal_derivatives(rest, modes);
@@ -256,7 +256,7 @@ TEST(ModalDerivatives, ContainModesAndDerivativesAndAreNested) {
   for (const StvkBar& system : {clamped_bar(), free_bar()}) {
     const Index rigid = system.numbering().num_free() < system.num_nodes() ? 0 : 6;
     const VibrationModes modes = vibration_modes(system, {.num_modes = rigid + 5});
-    const Matrix theta = modal_derivatives(rest_state(system), modes).vectors;
+    const Matrix theta = modal_derivatives(system.rest_state(), modes).vectors;
     const DenseBasis all = ModalDerivatives{.num_modes = 5}(system);
     EXPECT_LT(outside(all, system, modes.vectors), 1e-10);
     EXPECT_LT(outside(all, system, theta), 1e-8);
@@ -281,13 +281,13 @@ TEST(ModalDerivatives, RepresentALargeBendBetterThanAsManyModes) {
   const StvkBar system = clamped_bar();
   Loads loads;
   loads.gravity = {0, 0, -9};
-  AffineLoad<SparseMatrix> load = system.project(loads);
+  SystemLoad<SparseMatrix> load = system.project(loads);
   const double full = 60;
   Vector u = Vector::Zero(system.dim());
   SpdSolver<SparseMatrix> solver;
   for (const double share : {0.25, 0.5, 0.75, 1.0}) {
     Equilibrium<StvkBar> equilibrium(system, {share * full / 9 * load.force, {}});
-    ASSERT_EQ(newton_minimize(equilibrium, solver, u).status, Status::Converged);
+    ASSERT_EQ(Newton{}(equilibrium, solver, u).status, Status::Converged);
   }
   EXPECT_GT(u.lpNorm<Eigen::Infinity>(), 0.2) << "a third of its length";
   const Vector bent = system.expand(u);

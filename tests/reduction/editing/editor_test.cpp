@@ -72,6 +72,8 @@ TEST(Handle, SamplesItsNodes) {
 }
 
 /// A free bar with a handle at either end.
+const std::array<NonlinearSolver, 3> every_static_solver{Newton{}, LineSearchBfgs{}, Nlopt{}};
+
 struct HeldBar {
   TetMesh mesh = bar_mesh();
   StvkBar system = free_bar();
@@ -109,12 +111,13 @@ TEST(Editor, ExtendedModesTakeARigidMotionExactlyToo) {
   const ReducedSystem reduced(bar.system.shared_model(), subspace, all_components(m), Vector::Ones(m),
                               project_stiffness(*subspace, bar.system), bar.system.nodal_mass());
   const RigidMotion motion = RigidMotion::turn({1, 2, 3}, 2.0, {0.1, 0, 0}, {0.2, 0, -0.1});
-  for (const StaticMethod method : {StaticMethod::Newton, StaticMethod::Bfgs, StaticMethod::Nlopt}) {
+  for (const NonlinearSolver& method : every_static_solver) {
     // NLopt's line searches give up earlier than ours
-    auto editor = bar.editor(reduced, {.method = method, .tolerance = method == StaticMethod::Nlopt ? 1e-6 : 1e-8});
+    auto editor =
+        bar.editor(reduced, {.solver = method, .tolerance = std::holds_alternative<Nlopt>(method) ? 1e-6 : 1e-8});
     editor.move(0, motion);
     editor.move(1, motion);
-    ASSERT_EQ(editor.solve().status, Status::Converged) << static_cast<int>(method);
+    ASSERT_EQ(editor.solve().status, Status::Converged) << method.index();
     const Vector u = subspace->reconstruct(editor.state());
     for (Index v = 0; v < bar.mesh.num_nodes(); ++v) {
       const Point x = bar.mesh.nodes.row(v).transpose();
@@ -137,11 +140,12 @@ TEST(Editor, MethodsAgreeInTheReducedSpaceAndWithTheFullSystemWhereTheSubspaceIs
   auto full = bar.editor(bar.system, {.tolerance = 1e-9});
   full.move(1, HeldBar::bend(0.5));
   ASSERT_EQ(full.solve().status, Status::Converged);
-  for (const StaticMethod method : {StaticMethod::Newton, StaticMethod::Bfgs, StaticMethod::Nlopt}) {
+  for (const NonlinearSolver& method : every_static_solver) {
     auto editor = bar.editor(
-        reduced, {.method = method, .tolerance = method == StaticMethod::Nlopt ? 1e-6 : 1e-8, .max_iterations = 500});
+        reduced,
+        {.solver = method, .tolerance = std::holds_alternative<Nlopt>(method) ? 1e-6 : 1e-8, .max_iterations = 500});
     editor.move(1, HeldBar::bend(0.5));
-    ASSERT_EQ(editor.solve().status, Status::Converged) << static_cast<int>(method);
+    ASSERT_EQ(editor.solve().status, Status::Converged) << method.index();
     EXPECT_TRUE(is_near(subspace->reconstruct(editor.state()), full.state(), 1e-4 * full.state().norm()));
     EXPECT_NEAR(editor.elastic_energy(), full.elastic_energy(), 1e-4 * full.elastic_energy());
   }

@@ -235,8 +235,8 @@ struct Swing {
             .forces = {{55, {4, 0, 12}}},
             .springs = {{41, 60, {-0.1, 0.15, 0.1}}, {20, 150, {0, 0.1, 0}}}};
   }
-  static NewmarkOptions options(NonlinearSolver solver) {
-    NewmarkOptions options{.tolerance = 1e-9, .max_iterations = 200};
+  static StepOptions options(NonlinearSolver solver) {
+    StepOptions options{.tolerance = 1e-9, .max_iterations = 200};
     options.damping = {.alpha = 0.3, .beta = 2e-3};
     options.solver = solver;
     return options;
@@ -265,17 +265,18 @@ TEST(Collapse, WithoutReductionTheReducedTrajectoryIsTheFullOne) {
   const NodalBasis basis = whole_space(system);
   const auto nodal = unselected(system, basis);
   const auto dense = unselected(system, as_dense(basis));
-  const Matrix full = Swing::run(system, NonlinearSolver::Newton, [&](VectorIn u) { return system.expand(u); });
+  const Matrix full = Swing::run(system, NonlinearSolver(Newton{}), [&](VectorIn u) { return system.expand(u); });
   const double size = full.lpNorm<Eigen::Infinity>();
   ASSERT_GT(size, 0.1) << "the motion is to be nonlinear";
   ASSERT_GT((full.col(19) - full.col(9)).lpNorm<Eigen::Infinity>(), 0.01) << "and to move";
-  for (const NonlinearSolver solver : {NonlinearSolver::Newton, NonlinearSolver::Bfgs, NonlinearSolver::Broyden}) {
-    SCOPED_TRACE(static_cast<int>(solver));
+  for (const NonlinearSolver& solver :
+       {NonlinearSolver(Newton{}), NonlinearSolver(Bfgs{}), NonlinearSolver(Broyden{})}) {
+    SCOPED_TRACE(solver.index());
     EXPECT_TRUE(
         is_near(Swing::run(nodal, solver, [&](VectorIn q) { return basis.reconstruct(q); }), full, 1e-6 * size));
   }
-  EXPECT_TRUE(is_near(Swing::run(dense, NonlinearSolver::Newton, [&](VectorIn q) { return basis.reconstruct(q); }),
-                      full, 1e-6 * size));
+  EXPECT_TRUE(
+      is_near(Swing::run(dense, Newton{}, [&](VectorIn q) { return basis.reconstruct(q); }), full, 1e-6 * size));
 }
 
 }  // namespace

@@ -1,19 +1,23 @@
-#pragma once
-/// \file The loop over time steps, for any system.
-
 #include <app/scene/simulation.hpp>
 #include <core/stopwatch.hpp>
+#include <physics/body/body_system.hpp>
+#include <physics/time/integrator_library.hpp>
+
+#include <cmath>
 
 namespace supple {
 
+namespace {
+
 /// A scene's loads in the unknowns of a system. Everything is projected once; what changes over time is the
 /// sum.
-template <DynamicalSystem System>
+template <typename MatrixType>
 class SceneLoads {
-  using Load = AffineLoad<typename System::MatrixType>;
+  using Load = SystemLoad<MatrixType>;
 
  public:
-  SceneLoads(const System& system, const Scene& scene) : scene_(scene), load_{Vector::Zero(system.dim()), {}} {
+  SceneLoads(const AnySystem<MatrixType>& system, const Scene& scene)
+      : scene_(scene), load_{Vector::Zero(system.dim()), {}} {
     for (const TimedLoads& timed : scene.loads) columns_.push_back(system.project(timed.loads).force);
     for (const TimedSprings& timed : scene.springs) {
       Loads loads;
@@ -25,7 +29,12 @@ class SceneLoads {
         if (x == 0) stiffness_.push_back(std::move(unit.stiffness));
       }
     }
-    active_.resize(scene.springs.size());
+    for (const TimedForce& timed : scene.others) {
+      Loads loads;
+      loads.others.push_back(timed.force);
+      others_.push_back(system.project(loads).others.front());
+    }
+    active_.resize(scene.springs.size() + scene.others.size());
   }
 
   const Load& at(double t) {
@@ -38,6 +47,7 @@ class SceneLoads {
       const Point displacement = timed.when.share(t) * timed.displacement(t);
       shares.insert(shares.end(), displacement.begin(), displacement.end());
     }
+    for (const TimedForce& timed : scene_.others) active.push_back(timed.when.contains(t));
     if (shares != shares_) {
       load_.force.setZero();
       for (std::size_t k = 0; k < columns_.size(); ++k)
@@ -46,13 +56,16 @@ class SceneLoads {
     }
     if (active != active_) {
       load_.stiffness = {};
-      for (std::size_t k = 0; k < active.size(); ++k)
+      for (std::size_t k = 0; k < stiffness_.size(); ++k)
         if (active[k] && stiffness_[k].size() > 0) {
           if (load_.stiffness.size() == 0)
             load_.stiffness = stiffness_[k];
           else
             load_.stiffness += stiffness_[k];
         }
+      load_.others.clear();
+      for (std::size_t k = 0; k < others_.size(); ++k)
+        if (active[stiffness_.size() + k]) load_.others.push_back(others_[k]);
       active_ = std::move(active);
     }
     return load_;
@@ -60,18 +73,18 @@ class SceneLoads {
 
  private:
   const Scene& scene_;
-  std::vector<Vector> columns_;  // of each load, then three of each group of springs: at unit displacements
-  std::vector<typename System::MatrixType> stiffness_;  // of each group of springs
+  std::vector<Vector> columns_;        // of each load, then three of each group of springs: at unit displacements
+  std::vector<MatrixType> stiffness_;  // of each group of springs
+  std::vector<std::shared_ptr<const OutsideTerm<MatrixType>>> others_;
   std::vector<double> shares_;
-  std::vector<bool> active_;
+  std::vector<bool> active_;  // of springs, then of others
   Load load_;
 };
 
 /// \param frame  unknowns → the coordinates that frames keep.
-/// \param displacement  (unknowns, node) → displacement of a node [m].
-template <DynamicalSystem System, typename Frame, typename Displacement>
-Simulation integrate(const System& system, const Scene& scene, const SimulationOptions& options, const Frame& frame,
-                     const Displacement& displacement, const Progress& progress) {
+template <typename MatrixType, typename Frame>
+Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, const SimulationOptions& options,
+                     const Frame& frame, const Progress& progress) {
   Simulation result;
   result.unknowns = system.dim();
   const Index num_frames = options.num_steps / options.every + 1;
@@ -80,22 +93,19 @@ Simulation integrate(const System& system, const Scene& scene, const SimulationO
 
   Stopwatch setup;
   SceneLoads loads(system, scene);
-  Newmark newmark(system, options.step, options.newmark);
-  State state = State::at_rest(system.dim());
-  newmark.balance(loads.at(0), state);
-  const auto external_force = [&](const auto& load) -> Vector {
-    return load.has_stiffness() ? Vector(load.force - load.stiffness * state.u) : load.force;
-  };
-  Vector external = external_force(loads.at(0));
+  auto integrator = make_integrator(options.integrator, system, options.step, options.steps);
+  State state = integrator.at_rest();
+  integrator.balance(loads.at(0), state);
+  Vector external = loads.at(0).at(state.u);
   result.setup_seconds = setup.seconds();
 
   const auto record = [&](const StepReport& report, double work) {
     const Index k = static_cast<Index>(result.steps.size());
-    result.steps.push_back({static_cast<double>(k) * options.step, newmark.kinetic_energy(state),
-                            system.energy(state.u), work, report.iterations, report.refreshes, report.residual,
-                            report.status});
+    result.steps.push_back({static_cast<double>(k) * options.step,
+                            0.5 * state.v.dot(system.mass().cwiseProduct(state.v)), system.energy(state.u), work,
+                            report.iterations, report.tangents, report.residual, report.status});
     for (std::size_t j = 0; j < scene.track.size(); ++j)
-      result.tracked.template block<1, 3>(k, 3 * j) = displacement(state.u, scene.track[j]).transpose();
+      result.tracked.template block<1, 3>(k, 3 * j) = system.displacement(state.u, scene.track[j]).transpose();
     if (k % options.every != 0) return;
     const Vector u = frame(state.u), v = frame(state.v);
     const Index f = static_cast<Index>(result.times.size());
@@ -107,6 +117,12 @@ Simulation integrate(const System& system, const Scene& scene, const SimulationO
     result.v.row(f) = v.transpose();
     result.times.push_back(result.steps.back().time);
   };
+  // a load at the end of step k, whatever rounding has made of the state's time
+  const auto during = [&](Index k) {
+    return [&loads, end = static_cast<double>(k) * options.step, h = options.step ](double t) -> const auto& {
+      return loads.at(std::abs(t - end) <= 1e-9 * h ? end : t);
+    };
+  };
   StepReport start;
   start.status = Status::Converged;
   start.residual = 0;
@@ -114,8 +130,7 @@ Simulation integrate(const System& system, const Scene& scene, const SimulationO
   for (Index k = 1; k <= options.num_steps; ++k) {
     const Vector u_before = state.u;
     Stopwatch watch;
-    const auto& load = loads.at(static_cast<double>(k) * options.step);
-    const StepReport report = newmark.step(load, state);
+    const StepReport report = integrator.step(during(k), state);
     result.integration_seconds += watch.seconds();
     const bool finite = report.status != Status::NotFinite && state.u.allFinite() && state.v.allFinite();
     if (!finite) {
@@ -124,7 +139,7 @@ Simulation integrate(const System& system, const Scene& scene, const SimulationO
       result.steps.back().residual = report.residual;
       break;
     }
-    const Vector now = external_force(load);
+    const Vector now = loads.at(static_cast<double>(k) * options.step).at(state.u);
     record(report, result.steps.back().work + 0.5 * (external + now).dot(state.u - u_before));
     external = now;
     tell(progress, "time steps", static_cast<double>(k) / static_cast<double>(options.num_steps));
@@ -134,6 +149,31 @@ Simulation integrate(const System& system, const Scene& scene, const SimulationO
   result.v.conservativeResize(frames, Eigen::NoChange);
   result.tracked.conservativeResize(static_cast<Index>(result.steps.size()), Eigen::NoChange);
   if (!result.finite()) result.tracked.bottomRows(1) = result.tracked.row(result.tracked.rows() - 2).eval();
+  return result;
+}
+
+}  // namespace
+
+Simulation simulate_reduced(const ReducedModel& model, const Scene& scene, const SimulationOptions& options,
+                            const Progress& progress) {
+  const Stopwatch watch;
+  const AnySystem<Matrix> system = model.system(options.precision);
+  const double construction = watch.seconds();
+  Simulation result = integrate(
+      system, scene, options, [](VectorIn q) -> Vector { return q; }, progress);
+  result.setup_seconds += construction;
+  return result;
+}
+
+Simulation simulate_full(const Body& body, const Scene& scene, const SimulationOptions& options,
+                         const Progress& progress) {
+  const Stopwatch watch;
+  tell(progress, "full system", 0);
+  const AnySystem<SparseMatrix> system = full_system(body);
+  const double construction = watch.seconds();
+  Simulation result = integrate(
+      system, scene, options, [&](VectorIn u) { return system.expand(u); }, progress);
+  result.setup_seconds += construction;
   return result;
 }
 

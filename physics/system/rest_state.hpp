@@ -1,22 +1,22 @@
 #pragma once
 /// \file An object at rest, as the construction of subspaces sees it.
 
+#include <core/check.hpp>
 #include <core/types.hpp>
 #include <physics/system/node_numbering.hpp>
 
 #include <functional>
 #include <span>
-#include <type_traits>
 
 namespace supple {
 
-/// What subspaces are made from, whatever the force model. Refers to the system, which must
-/// outlive it.
+/// What subspaces are made from, whatever the force model: matrices, masses, positions and stencils. A FullSystem converts
+/// to it; it refers to that system, which must outlive it.
 struct RestState {
   const SparseMatrix& K;     ///< at rest, over the free unknowns [N/m]
   const Vector& mass;        ///< of the free unknowns [kg]
   const Vector& nodal_mass;  ///< n [kg]
-  const Points& positions;   ///< n × 3 [m]
+  const Points& positions;   ///< n × 3 [m]; no rows where the force model does not know them
   const NodeNumbering& numbering;
   std::span<const Index> stencils;
   Index stencil_size;
@@ -37,22 +37,13 @@ struct RestState {
       columns.middleRows(node_dim * v, node_dim) = full.middleRows(node_dim * numbering.free_nodes()[v], node_dim);
     return columns;
   }
+  /// \throws std::invalid_argument unless the object is in ℝ³ and knows where its nodes are.
+  void require_space() const {
+    require(node_dim == 3 && positions.rows() == numbering.num_nodes(),
+            "this subspace is for objects in space whose force model has rest_positions()");
+  }
   /// Masses of all n · node_dim unknowns, fixed ones too.
   Vector mass_of_rows() const { return nodal_mass.replicate(1, node_dim).transpose().reshaped(); }
 };
-
-template <typename System>
-RestState rest_state(const System& system) {
-  using Model = std::remove_cvref_t<decltype(system.model())>;
-  return {system.rest_stiffness(),
-          system.mass(),
-          system.nodal_mass(),
-          system.model().rest_positions(),
-          system.numbering(),
-          system.stencils(),
-          Model::stencil_size,
-          System::node_dim,
-          [&system](VectorIn u, VectorOut f) { system.force(u, f); }};
-}
 
 }  // namespace supple

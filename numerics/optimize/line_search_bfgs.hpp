@@ -1,0 +1,90 @@
+#pragma once
+/// \file The BFGS method with a line search: quasi-Newton minimisation from a given inverse Hessian.
+
+#include <numerics/optimize/bfgs_memory.hpp>
+#include <numerics/optimize/newton.hpp>
+
+namespace supple {
+
+/// Minimises by BFGS steps whose lengths are searched: for statics, far from the minimum (the paper's choice for reduced
+/// systems).
+struct LineSearchBfgs {
+  /// After so many steps that are in the memory the Hessian is computed and factorised afresh, shifted if it is not
+  /// definite; 0: never, as the paper does. In large motions the Hessian at rest is a poor start.
+  Index refresh_after = 0;
+
+  /// Improves u until the residual ‖g‖ / scale is at most the tolerance. The matrix never appears: steps are kept and
+  /// applied to what `solver` holds, O(k d) after k steps beside one solve (Dennis & Schnabel 1987, Sec. 9; Nocedal &
+  /// Wright 2006, Sec. 7.2). Steps satisfy the Wolfe conditions, or their approximate form (Hager & Zhang 2005) where
+  /// values differ by rounding only.
+  /// \param solver  holds a factorised matrix close to the Hessian, such as the one at rest.
+  template <SmoothObjective O>
+  SolveReport operator()(O& objective, SpdSolver<typename O::MatrixType>& solver, Vector& u,
+                         const SolveLimits& limits = {}) const {
+    SolveReport report;
+    BfgsMemory memory;
+    ShiftedHessian<typename O::MatrixType> hessian;
+    Vector g(u.size()), g_trial(u.size()), trial(u.size());
+    objective.gradient(u, g);
+    double value = objective.value(u), scale = objective.scale(u);
+    const auto finish = [&](Status status) {
+      report.status = status;
+      return report;
+    };
+    for (;;) {
+      report.residual = relative_residual(g.norm(), scale);
+      if (!std::isfinite(report.residual) || !std::isfinite(value)) return finish(Status::NotFinite);
+      if (report.residual <= limits.tolerance) return finish(Status::Converged);
+      if (report.iterations == limits.max_iterations) return finish(Status::MaxIterations);
+      ++report.iterations;
+      if (refresh_after > 0 && memory.size() >= refresh_after) {
+        if (!hessian.factorize(objective, solver, u)) return finish(Status::Stagnated);
+        memory.clear();
+        ++report.tangents;
+      }
+
+      Vector step = -memory.inverse_times(solver, g);
+      double slope = g.dot(step);
+      if (!(slope < 0)) {  // rounding has spoilt the memory
+        memory.clear();
+        step = -solver.solve(g);
+        slope = g.dot(step);
+        if (!(slope < 0)) return finish(Status::Stagnated);
+      }
+      // the step length by bisection and doubling between what is too long and what is too short
+      const double rounding = 1e-13 * std::abs(value);
+      double t = 1, low = 0, high = std::numeric_limits<double>::infinity(), value_trial = 0;
+      bool found = false;
+      for (int attempt = 0; attempt < 40 && !found; ++attempt) {
+        trial = u + t * step;
+        objective.gradient(trial, g_trial);
+        value_trial = objective.value(trial);
+        const double slope_trial = g_trial.dot(step);
+        const bool decreases =
+            value_trial <= value + 1e-4 * t * slope || (value_trial <= value + rounding && slope_trial <= -0.8 * slope);
+        if (!decreases || !std::isfinite(slope_trial))
+          high = t;
+        else if (slope_trial < 0.9 * slope)
+          low = t;
+        else
+          found = true;
+        if (!found) t = std::isfinite(high) ? 0.5 * (low + high) : 2 * t;
+      }
+      if (!found) {
+        if (memory.size() == 0) {
+          objective.gradient(u, g);
+          return finish(Status::Stagnated);
+        }
+        memory.clear();  // once more along the preconditioned gradient
+        continue;
+      }
+      scale = objective.scale(trial);
+      value = value_trial;
+      memory.add(trial - u, g_trial - g);
+      u.swap(trial);
+      g.swap(g_trial);
+    }
+  }
+};
+
+}  // namespace supple

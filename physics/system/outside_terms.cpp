@@ -1,0 +1,56 @@
+#include <physics/system/outside_terms.hpp>
+
+namespace supple {
+
+namespace {
+
+class FullTerm final : public OutsideTerm<SparseMatrix> {
+ public:
+  FullTerm(AnyOutsideForce force, const NodeNumbering& numbering) : force_(std::move(force)) {
+    for (const Index v : force_.nodes()) free_.push_back(numbering.free_index(v));
+  }
+
+  void add_force(VectorIn u, VectorOut f) const override {
+    Points at_nodes = Points::Zero(num_nodes(), 3);
+    force_.force(displacements(u), at_nodes);
+    for (Index a = 0; a < num_nodes(); ++a)
+      if (free_[a] >= 0) f.segment<3>(3 * free_[a]) += at_nodes.row(a).transpose();
+  }
+  void add_stiffness(VectorIn u, SparseMatrix& K) const override {
+    ForceGradient gradient;
+    force_.stiffness(displacements(u), gradient);
+    for (const auto& [a, b, block] : gradient.blocks())
+      if (free_[a] >= 0 && free_[b] >= 0)
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) {
+            K.coeffRef(3 * free_[a] + i, 3 * free_[b] + j) += 0.5 * block(i, j);
+            K.coeffRef(3 * free_[b] + j, 3 * free_[a] + i) += 0.5 * block(i, j);
+          }
+    K.makeCompressed();
+  }
+  double potential(VectorIn u) const override { return force_.potential(displacements(u)); }
+  bool has_potential() const override { return force_.has_potential(); }
+
+ private:
+  Index num_nodes() const { return static_cast<Index>(free_.size()); }
+  Points displacements(VectorIn u) const {
+    Points at_nodes = Points::Zero(num_nodes(), 3);
+    for (Index a = 0; a < num_nodes(); ++a)
+      if (free_[a] >= 0) at_nodes.row(a) = u.segment<3>(3 * free_[a]).transpose();
+    return at_nodes;
+  }
+
+  AnyOutsideForce force_;
+  std::vector<Index> free_;  // −1 where fixed
+};
+
+}  // namespace
+
+std::vector<std::shared_ptr<const OutsideTerm<SparseMatrix>>> outside_terms(const std::vector<AnyOutsideForce>& forces,
+                                                                            const NodeNumbering& numbering) {
+  std::vector<std::shared_ptr<const OutsideTerm<SparseMatrix>>> terms;
+  for (const AnyOutsideForce& force : forces) terms.push_back(std::make_shared<const FullTerm>(force, numbering));
+  return terms;
+}
+
+}  // namespace supple

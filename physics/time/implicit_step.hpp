@@ -1,0 +1,171 @@
+#pragma once
+/// \file One implicit step of second order as a minimisation: what Newmark's method and its relatives share.
+
+#include <numerics/optimize/warm_solver.hpp>
+#include <physics/system/damping.hpp>
+#include <physics/time/time_integrator.hpp>
+
+#include <algorithm>
+
+namespace supple {
+
+/// What all implicit integrators of second order are told.
+struct StepOptions {
+  RayleighDamping damping = {};
+  NonlinearSolver solver = Newton{};
+  /// ‖M a + D v + f(u) − f_ext‖ against the largest of these terms, Euclidean norms; the pull −k u of springs
+  /// counts with f(u), the pull k u* of their targets with f_ext. What remains of these terms by rounding
+  /// alone counts as converged: a body at rest somewhere has no other forces.
+  double tolerance = 1e-6;
+  Index max_iterations = 60;  ///< of the nonlinear solver in a step
+};
+
+/// M a + D v + f(u) = f_ext for accelerations and velocities that are affine in the unknown u, a = c_m (u − ũ_m) and
+/// v = ṽ + c_d (u − ũ_d), as a smooth objective:
+///   φ(u) = ½ c_m ‖u − ũ_m‖²_M + ½ c_d ‖u − ũ_d‖²_D + ṽᵀ D u + E(u) + ½ uᵀ k u − f_extᵀ u.
+/// So a step is the minimiser of an incremental potential, and Newton's line search is safe.
+template <DynamicalSystem System>
+class StepObjective {
+ public:
+  using MatrixType = typename System::MatrixType;
+
+  /// \param system  must outlive the objective.
+  StepObjective(const System& system, const StepOptions& options, double c_m, double c_d)
+      : system_(system),
+        damping_(options.damping),
+        tolerance_(options.tolerance),
+        c_m_(c_m),
+        c_d_(c_d),
+        rounding_(8 * std::numeric_limits<double>::epsilon() *
+                  (c_m_ * system.mass() + system.rest_stiffness().diagonal())) {}
+
+  /// Where the step comes from. \param load  must stay during the solve.
+  void begin(const SystemLoad<MatrixType>& load, Vector u_m, Vector u_d, VectorIn v_tilde) {
+    load_ = &load;
+    u_m_ = std::move(u_m);
+    if (!damped()) return;
+    u_d_ = std::move(u_d);
+    damping_force_ = damp(v_tilde);
+  }
+
+  Vector acceleration(VectorIn u) const { return c_m_ * (u - u_m_); }  ///< a
+
+  bool has_value() const { return load_->has_potential(); }
+  double value(VectorIn u) const {
+    const Vector du = u - u_m_;
+    double phi = 0.5 * c_m_ * du.dot(system_.mass().cwiseProduct(du)) + system_.energy(u) - load_->force.dot(u);
+    if (damped()) phi += damping_value(u);
+    return phi + load_->pull_energy(u);
+  }
+  void gradient(VectorIn u, VectorOut g) {
+    system_.force(u, g);
+    load_->add_pull(u, g);
+    scale_ = std::max(g.norm(), load_->force.norm());
+    const Vector inertia = c_m_ * system_.mass().cwiseProduct(u - u_m_);
+    scale_ = std::max({scale_, inertia.norm(), rounding_.cwiseProduct(u).norm() / tolerance_});
+    g += inertia - load_->force;
+    if (!damped()) return;
+    const Vector damping = damping_force_ + c_d_ * damp(u - u_d_);
+    scale_ = std::max(scale_, damping.norm());
+    g += damping;
+  }
+  void hessian(VectorIn u, MatrixType& H) const {
+    system_.stiffness(u, H);
+    if (damping_.beta != 0) add_scaled(H, c_d_ * damping_.beta, system_.rest_stiffness());
+    add_diagonal(H, (c_m_ + c_d_ * damping_.alpha) * system_.mass());
+    load_->add_stiffness(u, H);
+  }
+  double scale(VectorIn) const { return scale_; }
+  const Vector& metric() const { return system_.mass(); }
+
+  bool damped() const { return damping_.alpha != 0 || damping_.beta != 0; }
+  /// D v.
+  Vector damp(VectorIn v) const {
+    Vector result = damping_.alpha * system_.mass().cwiseProduct(v);
+    if (damping_.beta != 0) result += damping_.beta * (system_.rest_stiffness() * v);
+    return result;
+  }
+
+ private:
+  double damping_value(VectorIn u) const {
+    const Vector du = u - u_d_;
+    return 0.5 * c_d_ * du.dot(damp(du)) + damping_force_.dot(u);
+  }
+
+  const System& system_;
+  RayleighDamping damping_;
+  double tolerance_, c_m_, c_d_;
+  Vector rounding_;  // of the forces, relative to the displacements
+  const SystemLoad<MatrixType>* load_ = nullptr;
+  Vector u_m_, u_d_, damping_force_;
+  double scale_ = 0;
+};
+
+/// What integrators of second order that solve one StepObjective a step have in common: checks, balance, energies and the
+/// nonlinear solver. The integrator itself says where a step comes from and where its solution leads.
+template <DynamicalSystem System>
+class ImplicitIntegrator {
+ public:
+  using MatrixType = typename System::MatrixType;
+  using State = supple::State;
+
+  double step_size() const { return h_; }  ///< [s]
+  State at_rest() const { return State::at_rest(system_.dim()); }
+
+  /// The acceleration that u and v imply under this load; call it after setting a state by hand.
+  void balance(const SystemLoad<MatrixType>& load, State& state) const {
+    check(load, state);
+    Vector r(system_.dim());
+    system_.force(state.u, r);
+    load.add_pull(state.u, r);
+    if (objective_.damped()) r += objective_.damp(state.v);
+    state.a = (load.force - r).cwiseQuotient(system_.mass());
+  }
+
+  /// Kinetic plus elastic energy [J].
+  double energy(const State& state) const { return kinetic_energy(state) + system_.energy(state.u); }
+  double kinetic_energy(const State& state) const { return 0.5 * state.v.dot(system_.mass().cwiseProduct(state.v)); }
+
+ protected:
+  /// \param name  of the method, for messages.  \param c_m, c_d  see StepObjective.
+  ImplicitIntegrator(const char* name, const System& system, double h, const StepOptions& options, double c_m,
+                     double c_d)
+      : system_(system), h_(h), options_(options), objective_(system, options, c_m, c_d), solver_(options.solver) {
+    require(std::isfinite(h) && h > 0, "time step is " + std::to_string(h) + " s, expected > 0");
+    require(options.tolerance > 0,
+            std::string(name) + "'s tolerance is " + std::to_string(options.tolerance) + ", expected > 0");
+  }
+
+  void check(const SystemLoad<MatrixType>& load, const State& state) const {
+    load.check(system_.dim());
+    require_size("state.u", state.u.size(), system_.dim());
+    require_size("state.v", state.v.size(), system_.dim());
+  }
+
+  /// The solution of the objective, found from `prediction`, or from `last` where that leaves the domain of the energy.
+  StepReport solve(const SystemLoad<MatrixType>& load, VectorIn last, Vector prediction, Vector& u) {
+    if (!load.has_same_pull(prepared_for_)) {
+      solver_.forget();
+      prepared_for_ = {{}, load.stiffness, load.others};
+    }
+    u = std::move(prediction);
+    StepReport report = solver_(objective_, u, {options_.tolerance, options_.max_iterations});
+    if (!solver_.was_definite_at_rest()) throw SolverError("the system matrix at rest is not positive definite");
+    if (report.status == Status::NotFinite) {
+      u = last;
+      report = solver_(objective_, u, {options_.tolerance, options_.max_iterations});
+    }
+    return report;
+  }
+
+  const System& system_;
+  const double h_;
+  StepOptions options_;
+  StepObjective<System> objective_;
+
+ private:
+  WarmSolver<MatrixType> solver_;
+  SystemLoad<MatrixType> prepared_for_;
+};
+
+}  // namespace supple

@@ -1,0 +1,55 @@
+#pragma once
+/// \file Registry of time integrators, for scenes.
+
+#include <core/registry.hpp>
+#include <physics/system/any_system.hpp>
+#include <physics/time/any_integrator.hpp>
+#include <physics/time/implicit_step.hpp>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace supple {
+
+/// A time integrator by name, for reduced (dense) and full (sparse) systems alike.
+struct NamedIntegrator {
+  template <typename MatrixType>
+  using Make = std::function<AnyIntegrator<AnySystem<MatrixType>>(
+      const AnySystem<MatrixType>& system, double h, const StepOptions& step, const OptionValues& options)>;
+
+  std::string name, description;
+  std::vector<OptionInfo> options;
+  /// \throws std::invalid_argument for options that it has not, or that make no sense. The system must outlive what they
+  /// make.
+  Make<Matrix> reduced;
+  Make<SparseMatrix> full;
+};
+
+/// The entry of an integrator of one's own: a class template over the system, constructed as
+/// Integrator<System>(system, h, StepOptions, Parameters).
+///
+///     integrators().add(named_integrator<MyMethod>("my-method", "what it is good for",
+///                                                  OptionsOf<MyParameters>().add("theta", &MyParameters::theta, "…")));
+template <template <DynamicalSystem> class Integrator, typename Parameters>
+NamedIntegrator named_integrator(std::string name, std::string description, OptionsOf<Parameters> options) {
+  const auto make = [name, options]<typename System>(const System& system, double h, const StepOptions& step,
+                                                     const OptionValues& values) {
+    const Parameters parameters = options.make(values, "integrator " + name);
+    return AnyIntegrator<System>(std::make_unique<Integrator<System>>(system, h, step, parameters));
+  };
+  return {name, std::move(description), options.info(), make, make};
+}
+
+/// All integrators by name, the default first: "newmark", "generalized-alpha" and what was added.
+Registry<NamedIntegrator>& integrators();
+
+/// An integrator as a user chooses it, "generalized-alpha:rho_infinity=0.9", of steps of h [s].
+/// \param system  must outlive the integrator.
+AnyIntegrator<AnySystem<Matrix>> make_integrator(const Choice& choice, const AnySystem<Matrix>& system, double h,
+                                                 const StepOptions& step);
+AnyIntegrator<AnySystem<SparseMatrix>> make_integrator(const Choice& choice, const AnySystem<SparseMatrix>& system,
+                                                       double h, const StepOptions& step);
+
+}  // namespace supple

@@ -1,0 +1,170 @@
+#include <core/check.hpp>
+#include <reduction/basis/joined_basis.hpp>
+#include <reduction/basis/modal_derivatives.hpp>
+#include <reduction/basis/pca_basis.hpp>
+#include <reduction/basis/skinning_modes.hpp>
+#include <reduction/basis/subspace_library.hpp>
+
+#include <algorithm>
+
+namespace supple {
+
+namespace {
+
+template <typename Basis>
+AnyBasis share(Basis basis) {
+  return std::make_shared<const Basis>(std::move(basis));
+}
+
+VibrationModes modes_of(const RestState& object, const SubspaceChoice& choice, Index count, const SubspaceRun& run) {
+  VibrationModes modes;
+  run.stage("vibration modes", [&] {
+    modes = vibration_modes(
+        object, {.num_modes = count, .tolerance = choice.tolerance, .seed = choice.seed, .progress = run.progress});
+  });
+  return modes;
+}
+
+/// An entry without options.
+NamedSubspace plain(std::string name, std::string description,
+                    AnyBasis (*build)(const RestState&, const SubspaceChoice&, const SubspaceRun&)) {
+  NamedSubspace entry{name, std::move(description), {}, {}};
+  entry.build = [name, build](const RestState& object, const SubspaceChoice& choice, const OptionValues& options,
+                              const SubspaceRun& run) {
+    require(options.empty(),
+            "subspace " + name + " has no options, found '" + (options.empty() ? "" : options[0].first) + "'");
+    return build(object, choice, run);
+  };
+  return entry;
+}
+
+NamedSubspace extended() {
+  return plain("extended", "modes under all linear maps",
+               [](const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run) {
+                 object.require_space();
+                 const VibrationModes modes = modes_of(object, choice, choice.modes, run);
+                 AnyBasis basis;
+                 run.stage("subspace",
+                           [&] { basis = share(extend_modes(modes, object.positions, object.nodal_mass)); });
+                 return basis;
+               });
+}
+
+NamedSubspace modal() {
+  return plain(
+      "modal", "modes alone", [](const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run) {
+        VibrationModes modes = modes_of(object, choice, choice.dimension > 0 ? choice.dimension : choice.modes, run);
+        return share(DenseBasis{std::move(modes.vectors), modes.report()});
+      });
+}
+
+NamedSubspace derivatives() {
+  const OptionsOf<ModalDerivatives> options =
+      OptionsOf(ModalDerivatives{.affine_fields = true})
+          .add("affine_fields", &ModalDerivatives::affine_fields, "whether free parts bring all 12 affine motions");
+  NamedSubspace entry{"derivatives", "modal derivatives", options.info(), {}};
+  entry.build = [options](const RestState& object, const SubspaceChoice& choice, const OptionValues& values,
+                          const SubspaceRun& run) {
+    ModalDerivatives build = options.make(values, "subspace derivatives");
+    build.num_modes = choice.modes;
+    build.dimension = choice.dimension;
+    build.tolerance = choice.tolerance;
+    build.seed = choice.seed;
+    build.progress = run.progress;
+    AnyBasis basis;
+    run.stage("modes and derivatives", [&] { basis = share(build(object)); });
+    return basis;
+  };
+  return entry;
+}
+
+NamedSubspace skinning() {
+  return plain("skinning", "skinning eigenmodes",
+               [](const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run) {
+                 AnyBasis basis;
+                 run.stage("skinning modes", [&] {
+                   basis = share(SkinningModes{.num_weights = skinning_weights(choice),
+                                               .tolerance = choice.tolerance,
+                                               .seed = choice.seed,
+                                               .progress = run.progress}(object));
+                 });
+                 return basis;
+               });
+}
+
+NamedSubspace pca() {
+  return plain("pca", "principal components of snapshots",
+               [](const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run) {
+                 AnyBasis basis;
+                 run.stage("subspace", [&] {
+                   basis = share(PcaBasis{.snapshots = choice.snapshots, .dimension = choice.dimension}(object));
+                 });
+                 return basis;
+               });
+}
+
+/// The parts of a name, each with its options.
+std::vector<Choice> choices_of(const std::string& name) {
+  std::vector<Choice> parts;
+  for (std::size_t begin = 0; begin <= name.size();) {
+    const std::size_t end = std::min(name.find('+', begin), name.size());
+    Choice part = Choice::parse(name.substr(begin, end - begin));
+    if (!subspaces().contains(part.name)) {
+      std::string known;
+      for (const std::string& other : known_subspaces()) known += (known.empty() ? "" : ", ") + other;
+      throw std::invalid_argument("subspace '" + part.name + "' is not known, expected one of " + known +
+                                  ", or several with '+' between");
+    }
+    require(std::ranges::find(parts, part.name, &Choice::name) == parts.end(),
+            "subspace '" + name + "' has '" + part.name + "' twice");
+    parts.push_back(std::move(part));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+}  // namespace
+
+Registry<NamedSubspace>& subspaces() {
+  static Registry<NamedSubspace> all("subspace", {extended(), modal(), derivatives(), skinning(), pca()});
+  return all;
+}
+
+std::vector<std::string> known_subspaces() {
+  return subspaces().names();
+}
+
+std::vector<std::string> parts_of_subspace(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Choice& part : choices_of(name)) names.push_back(part.name);
+  return names;
+}
+
+void check(const SubspaceChoice& choice) {
+  const std::vector<std::string> parts = parts_of_subspace(choice.name);
+  require(parts.size() == 1 || choice.dimension == 0,
+          "subspace '" + choice.name + "' has the dimensions of its parts, expected no other");
+  require(choice.modes >= 1, "number of modes is " + std::to_string(choice.modes) + ", expected at least 1");
+  require(choice.dimension >= 0, "dimension is " + std::to_string(choice.dimension) + ", expected 0 or more");
+  require(std::ranges::find(parts, "pca") == parts.end() || choice.snapshots.size() > 0,
+          "subspace 'pca' needs snapshots");
+}
+
+Index skinning_weights(const SubspaceChoice& choice) {
+  return std::max<Index>(1, choice.dimension > 0 ? choice.dimension / 12 : (choice.modes + 1) / 2);
+}
+
+AnyBasis build_subspace(const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run) {
+  const std::vector<Choice> parts = choices_of(choice.name);
+  const auto build = [&](const Choice& part) {
+    return subspaces().at(part.name).build(object, choice, part.options, run);
+  };
+  AnyBasis sum = build(parts.front());
+  for (std::size_t k = 1; k < parts.size(); ++k)
+    sum = std::visit([&](const auto& first,
+                         const auto& second) -> AnyBasis { return share(join(*first, *second, object.nodal_mass)); },
+                     sum, build(parts[k]));
+  return sum;
+}
+
+}  // namespace supple

@@ -1,0 +1,309 @@
+#include <core/random.hpp>
+#include <core/tensor_file.hpp>
+#include <physics/body/force_models.hpp>
+#include <reduction/pipeline/reduced_model.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <concepts>
+
+namespace supple {
+
+namespace {
+
+constexpr const char* format_name = "supple reduced model";
+constexpr const char* format_version = "1";
+
+std::vector<std::int64_t> widen(const std::vector<Index>& values) {
+  return {values.begin(), values.end()};
+}
+
+template <std::size_t corners>
+std::vector<std::array<std::int32_t, corners>> narrow(const std::vector<std::array<Index, corners>>& elements) {
+  std::vector<std::array<std::int32_t, corners>> result(elements.size());
+  for (std::size_t e = 0; e < elements.size(); ++e)
+    std::transform(elements[e].begin(), elements[e].end(), result[e].begin(),
+                   [](Index v) { return static_cast<std::int32_t>(v); });
+  return result;
+}
+
+/// What the arrays over the cells of a solid are called.
+template <typename Mesh>
+struct CellArrays {
+  const char *cells, *material = "material.of_cell";
+};
+template <typename Mesh>
+constexpr CellArrays<Mesh> arrays = {};
+template <>
+constexpr CellArrays<TetMesh> arrays<TetMesh> = {"mesh.tets", "material.of_tet"};
+template <>
+constexpr CellArrays<HexMesh> arrays<HexMesh> = {"mesh.hexahedra"};
+template <>
+constexpr CellArrays<QuadraticTetMesh> arrays<QuadraticTetMesh> = {"mesh.quadratic_tets"};
+
+constexpr const char *component_key = "component", *gauss_point = "gauss-point";
+
+template <typename Mesh>
+void add_body(TensorFileWriter& file, const SolidOf<Mesh>& solid) {
+  for (const auto& [tag, name] : solid.mesh.region_names) file.metadata["region." + std::to_string(tag)] = name;
+  if (!std::same_as<Mesh, TetMesh> && solid.component == SolidComponent::GaussPoint)
+    file.metadata[component_key] = gauss_point;
+  file.add(arrays<Mesh>.cells, narrow(solid.mesh.cells));
+  if (!solid.mesh.region.empty())
+    file.add("mesh.region", std::vector<std::int32_t>(solid.mesh.region.begin(), solid.mesh.region.end()));
+  file.add("material.parameters", solid.parameters);
+  if (!solid.material_of_cell.empty()) file.add(arrays<Mesh>.material, solid.material_of_cell);
+  file.add("density", solid.density);
+}
+
+void add_body(TensorFileWriter& file, const Shell& shell) {
+  file.add("mesh.triangles", narrow(shell.mesh.triangles));
+  RowMatrix parameters(static_cast<Index>(shell.materials.size()), 3);
+  for (Index k = 0; k < parameters.rows(); ++k) {
+    const ShellMaterial& material = shell.materials[k];
+    parameters.row(k) << material.bending, material.stretch, material.area;
+  }
+  file.add("material.parameters", parameters);
+  file.add("thickness", shell.thickness);
+  file.add("density", shell.density);
+}
+
+/// Reads arrays of a model and says which one is wrong.
+class ModelReader {
+ public:
+  explicit ModelReader(const std::filesystem::path& path) : path_(path), file(path) {}
+
+  InputError fail(const std::string& why) const { return InputError(path_.string() + ": " + why); }
+
+  int whole_number(const std::string& key, const std::string& text) const {
+    int value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size())
+      throw fail(key + ": '" + text + "' is not a whole number");
+    return value;
+  }
+
+  template <std::size_t corners>
+  std::vector<std::array<Index, corners>> elements(const std::string& name, Index num_nodes) const {
+    const auto nodes = file.values<std::int32_t>(name, {TensorFile::any, corners});
+    if (nodes.empty()) throw fail(name + " is empty");
+    std::vector<std::array<Index, corners>> result(nodes.size() / corners);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (nodes[k] < 0 || nodes[k] >= num_nodes)
+        throw fail(name + " names node " + std::to_string(nodes[k]) + ", expected 0 to " +
+                   std::to_string(num_nodes - 1));
+      result[k / corners][k % corners] = nodes[k];
+    }
+    return result;
+  }
+
+  RowMatrix finite_matrix(const std::string& name, Index rows = TensorFile::any, Index cols = TensorFile::any) const {
+    RowMatrix values = file.matrix(name, rows, cols);
+    if (!values.allFinite()) throw fail(name + " holds a number that is not finite");
+    return values;
+  }
+  Vector finite_vector(const std::string& name, Index size = TensorFile::any) const {
+    Vector values = file.vector(name, size);
+    if (!values.allFinite()) throw fail(name + " holds a number that is not finite");
+    return values;
+  }
+
+ private:
+  std::filesystem::path path_;
+
+ public:
+  const TensorFile file;
+};
+
+template <typename Mesh>
+SolidOf<Mesh> read_solid(const ModelReader& in, Points nodes) {
+  SolidOf<Mesh> solid;
+  solid.mesh.nodes = std::move(nodes);
+  solid.mesh.cells = in.elements<Mesh::nodes_per_cell>(arrays<Mesh>.cells, solid.mesh.num_nodes());
+  const Index m = solid.mesh.num_cells();
+  if (in.file.metadata().contains(component_key)) {
+    const std::string& component = in.file.metadata(component_key);
+    if (std::same_as<Mesh, TetMesh> || component != gauss_point)
+      throw in.fail("component is '" + component + "', expected " +
+                    (std::same_as<Mesh, TetMesh> ? "none for tets" : std::string(gauss_point) + ", or none for cells"));
+    solid.component = SolidComponent::GaussPoint;
+  }
+  if (in.file.contains("mesh.region")) {
+    const auto region = in.file.values<std::int32_t>("mesh.region", {m});
+    solid.mesh.region.assign(region.begin(), region.end());
+  }
+  for (const auto& [key, text] : in.file.metadata())
+    if (key.starts_with("region.")) solid.mesh.region_names[in.whole_number(key, key.substr(7))] = text;
+  solid.law = in.file.metadata("material.law");
+  solid.parameters = in.finite_matrix("material.parameters");
+  if (in.file.contains(arrays<Mesh>.material)) {
+    const auto of_cell = in.file.values<std::int32_t>(arrays<Mesh>.material, {m});
+    solid.material_of_cell.assign(of_cell.begin(), of_cell.end());
+  }
+  solid.density = in.finite_vector("density");
+  return solid;
+}
+
+Shell read_shell(const ModelReader& in, Points nodes) {
+  Shell shell;
+  shell.mesh.nodes = std::move(nodes);
+  shell.mesh.triangles = in.elements<3>("mesh.triangles", shell.mesh.num_nodes());
+  const RowMatrix parameters = in.finite_matrix("material.parameters", TensorFile::any, 3);
+  for (Index k = 0; k < parameters.rows(); ++k)
+    shell.materials.push_back({parameters(k, 0), parameters(k, 1), parameters(k, 2)});
+  shell.thickness = in.finite_vector("thickness");
+  shell.density = in.finite_vector("density");
+  return shell;
+}
+
+/// The object of whatever cells the file has.
+Body read_body(const ModelReader& in, Points nodes) {
+  constexpr std::array cells{arrays<TetMesh>.cells, arrays<HexMesh>.cells, arrays<QuadraticTetMesh>.cells,
+                             "mesh.triangles"};
+  std::vector<const char*> present;
+  for (const char* name : cells)
+    if (in.file.contains(name)) present.push_back(name);
+  if (present.size() > 1) throw in.fail("there are both " + std::string(present[0]) + " and " + present[1]);
+  if (present.empty()) {
+    std::string names;
+    for (const char* name : cells) names += (names.empty() ? "" : ", ") + std::string(name);
+    throw in.fail("there are no cells, expected one of " + names);
+  }
+  if (present[0] == cells[1]) return read_solid<HexMesh>(in, std::move(nodes));
+  if (present[0] == cells[2]) return read_solid<QuadraticTetMesh>(in, std::move(nodes));
+  if (present[0] == cells[3]) return read_shell(in, std::move(nodes));
+  return read_solid<TetMesh>(in, std::move(nodes));
+}
+
+/// \throws InputError unless the basis has columns, UᵀMU = I, and leaves fixed nodes where they are.
+void check_basis(const ModelReader& in, const ReducedModel& model) {
+  const Vector mass = nodal_mass(model.body);
+  std::visit(
+      [&](const auto& basis) {
+        const RowMatrix& W = basis->W;
+        const Index rows_of_node = W.rows() / mass.size();
+        if (W.cols() == 0) throw in.fail("subspace.W has no columns");
+        for (const Index v : fixed_nodes(model.body))
+          if (!W.middleRows(v * rows_of_node, rows_of_node).isZero(0))
+            throw in.fail("subspace.W moves node " + std::to_string(v) + ", which is fixed");
+        const Vector masses = mass.replicate(1, rows_of_node).transpose().reshaped();
+        Random random(1);
+        const Matrix X = Matrix::NullaryExpr(W.cols(), 4, [&] { return random.normal(); });
+        const Matrix Y = W.transpose() * (masses.asDiagonal() * (W * X)).eval();
+        if (!((Y - X).norm() <= 1e-6 * X.norm()))
+          throw in.fail("subspace.W is not orthonormal with the masses of the nodes");
+      },
+      model.subspace);
+}
+
+}  // namespace
+
+void save_model(const std::filesystem::path& path, const ReducedModel& model) {
+  TensorFileWriter file;
+  file.metadata = {{"format", format_name},
+                   {"format_version", format_version},
+                   {"material.law", std::string(law(model.body))},
+                   {"subspace.name", model.subspace_name}};
+  for (const auto& [key, text] : model.provenance) file.metadata["provenance." + key] = text;
+  file.add("mesh.nodes", node_positions(model.body));
+  std::visit([&](const auto& body) { add_body(file, body); }, model.body);
+  file.add("fixed_nodes", widen(fixed_nodes(model.body)));
+  file.add("damping", (Vector(2) << damping(model.body).alpha, damping(model.body).beta).finished());
+
+  std::visit(
+      [&](const auto& basis) {
+        file.metadata["subspace.block"] = std::to_string(std::remove_cvref_t<decltype(*basis)>::block);
+        file.metadata["subspace.rigid_modes"] = std::to_string(basis->report.rigid_modes);
+        file.metadata["subspace.zero_modes"] = std::to_string(basis->report.zero_modes);
+        file.add("subspace.W", basis->W);
+        file.add("subspace.omega", basis->report.omega);
+        file.add("subspace.residuals", basis->report.residuals);
+      },
+      model.subspace);
+  file.add("selection.indices", widen(model.indices));
+  file.add("selection.weights", model.weights);
+  file.add("rest_stiffness", model.rest_stiffness);
+  file.write(path);
+}
+
+ReducedModel load_model(const std::filesystem::path& path) {
+  const ModelReader in(path);
+  const TensorFile& file = in.file;
+  if (!file.metadata().contains("format") || file.metadata("format") != format_name)
+    throw in.fail("this is not a reduced model of Supple");
+  if (file.metadata("format_version") != format_version)
+    throw in.fail("the model has version " + file.metadata("format_version") + ", expected " + format_version);
+
+  ReducedModel model;
+  const Points nodes = in.finite_matrix("mesh.nodes", TensorFile::any, 3);
+  const Index n = nodes.rows();
+  model.body = read_body(in, nodes);
+  for (const auto& [key, text] : file.metadata())
+    if (key.starts_with("provenance.")) model.provenance[key.substr(11)] = text;
+  std::visit(
+      [&](auto& body) {
+        for (const std::int64_t v : file.integers("fixed_nodes")) {
+          if (v < 0 || v >= n)
+            throw in.fail("fixed_nodes names node " + std::to_string(v) + ", expected 0 to " + std::to_string(n - 1));
+          body.fixed_nodes.push_back(v);
+        }
+        const Vector damping = in.finite_vector("damping", 2);
+        if ((damping.array() < 0).any()) throw in.fail("damping is negative, expected 0 or more");
+        body.damping = {damping[0], damping[1]};
+      },
+      model.body);
+
+  const auto load_basis = [&]<int block>(std::integral_constant<int, block>) {
+    auto basis = std::make_shared<KroneckerBasis<block>>();
+    basis->W = in.finite_matrix("subspace.W", 3 * n / block);
+    SubspaceReport& report = basis->report;
+    report.omega = in.finite_vector("subspace.omega");
+    report.residuals = file.vector("subspace.residuals", report.omega.size());
+    const auto number_of_modes = [&](const std::string& key, Index least) {
+      const Index count = in.whole_number(key, file.metadata(key));
+      if (count < least || count > report.omega.size())
+        throw in.fail(key + " is " + std::to_string(count) + ", expected " + std::to_string(least) + " to " +
+                      std::to_string(report.omega.size()));
+      return count;
+    };
+    report.rigid_modes = number_of_modes("subspace.rigid_modes", 0);
+    report.zero_modes = file.metadata().contains("subspace.zero_modes")
+                            ? number_of_modes("subspace.zero_modes", report.rigid_modes)
+                            : report.rigid_modes;
+    model.subspace = std::shared_ptr<const KroneckerBasis<block>>(std::move(basis));
+  };
+  model.subspace_name = file.metadata("subspace.name");
+  const std::string& block = file.metadata("subspace.block");
+  if (block == "3")
+    load_basis(std::integral_constant<int, 3>{});
+  else if (block == "1")
+    load_basis(std::integral_constant<int, 1>{});
+  else
+    throw in.fail("subspace.block is '" + block + "', expected 1 or 3");
+
+  try {  // what constructing the model demands: law, parameters, volumes
+    const Index m = with_force_model(model.body, [](const auto& force) { return force->num_components(); });
+    check_basis(in, model);
+    for (const std::int64_t i : file.integers("selection.indices")) {
+      if (i < 0 || i >= m)
+        throw in.fail("selection.indices names component " + std::to_string(i) + ", expected 0 to " +
+                      std::to_string(m - 1));
+      if (!model.indices.empty() && i <= model.indices.back())
+        throw in.fail("selection.indices are not ascending: " + std::to_string(i) + " follows " +
+                      std::to_string(model.indices.back()));
+      model.indices.push_back(i);
+    }
+  } catch (const std::invalid_argument& error) {
+    throw in.fail(error.what());
+  }
+  model.weights = in.finite_vector("selection.weights", static_cast<Index>(model.indices.size()));
+  if (!(model.weights.array() > 0).all()) throw in.fail("selection.weights are not all positive");
+  if (model.indices.empty()) throw in.fail("selection.indices is empty, expected one component at least");
+  model.rest_stiffness = in.finite_matrix("rest_stiffness", model.dim(), model.dim());
+  const Matrix& K = model.rest_stiffness;
+  if ((K - K.transpose()).norm() > 1e-8 * K.norm()) throw in.fail("rest_stiffness is not symmetric");
+  return model;
+}
+
+}  // namespace supple

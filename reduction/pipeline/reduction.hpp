@@ -1,0 +1,120 @@
+#pragma once
+/// \file The main job for force models, subspaces and selectors of one's own types.
+
+#include <core/peak_memory.hpp>
+#include <reduction/pipeline/reduced_forces.hpp>
+#include <reduction/pipeline/training.hpp>
+#include <sparse/selection/explain_subset_selector.hpp>
+#include <sparse/selection/smallest_selection.hpp>
+#include <sparse/selectors/nn_sp.hpp>
+
+#include <limits>
+#include <memory>
+
+namespace supple {
+
+/// Few components of an object, in a subspace, that stand for all.
+template <ForceModel Model, Subspace S>
+struct Reduction : ReducedForces<std::shared_ptr<const S>> {
+  std::shared_ptr<const FullSystem<Model>> full;
+  ReduceReport report;
+
+  /// What integrators and static solvers run.
+  ReducedSystem<Model, S> system() const {
+    return {full->shared_model(), this->subspace,       this->indices,
+            this->weights,        this->rest_stiffness, full->nodal_mass()};
+  }
+};
+
+/// The stage of selection: at most as many components as the options say, by select(problem, request).
+template <ForceModel Model, Subspace S, typename Selector>
+Selection select_components(const Training<Model, S>& training, const Selector& select, const ReduceOptions& options,
+                            const Progress& progress) {
+  SelectionRequest request(std::min<Index>(options.points, training.fitting.cols()));
+  request.target_error = options.target_error;
+  request.candidates = options.candidates;
+  request.must_keep = options.must_keep;
+  request.warm_start = options.warm_start;
+  request.progress = progress;
+  if (!training.held_out.empty())
+    request.validate = [&](const std::vector<Index>& indices, VectorIn weights) {
+      return training.held_out.front().second.error(indices, weights);
+    };
+  return training.with_problem([&](const auto& problem) {
+    return options.target_error > 0 ? smallest_selection(select, problem, request) : select(problem, request);
+  });
+}
+
+/// The stage of checks: what a selection is worth.
+struct SelectionChecks {
+  double training_error = 0, equilibrium_error = 0;
+  std::vector<std::pair<double, double>> held_out = {};  ///< share of the amplitude and error
+  Vector fitted_eigenvalues = {}, exact_eigenvalues = {};
+};
+template <ForceModel Model, Subspace S>
+SelectionChecks check(const Training<Model, S>& training, const WorkingComponents& working) {
+  SelectionChecks checks;
+  checks.training_error = training.error(working);
+  checks.equilibrium_error = training.equilibria
+                                 ? training.equilibria_of(working).error(working.indices, working.weights)
+                                 : std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [part, problem] : training.held_out)
+    checks.held_out.emplace_back(part, problem.error(working.indices, working.weights));
+  const auto reduced = training.object.reduced_system(working.indices, working.weights);
+  checks.exact_eigenvalues = training.object.softest_eigenvalues(training.object.rest_stiffness);
+  checks.fitted_eigenvalues = training.object.softest_eigenvalues(reduced.stiffness(Vector::Zero(reduced.dim())));
+  return checks;
+}
+
+/// All stages from training to checks.
+template <ForceModel Model, Subspace S, typename Selector>
+Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std::shared_ptr<const S> subspace,
+                           const ObjectTraits& traits, const Selector& select, const ReduceOptions& options,
+                           StageClock& stage) {
+  const Training<Model, S> training = train(system, subspace, traits, options, stage);
+  const Selection selection =
+      stage("selection", [&](auto) { return select_components(training, select, options, stage.progress()); });
+  WorkingComponents working = working_components(selection, options.selector);
+  stage("refit", [&](auto) {
+    WorkingComponents refit = training.refitted(working);
+    if (options.target_error == 0 || training.error(refit) <= options.target_error) working = std::move(refit);
+  });
+  const SelectionChecks checks = stage("checks", [&](auto) { return check(training, working); });
+
+  ReduceReport report = report_of(training);
+  report.points = static_cast<Index>(working.indices.size());
+  report.selection = selection.report;
+  report.training_error = checks.training_error;
+  report.equilibrium_error = checks.equilibrium_error;
+  report.held_out = checks.held_out;
+  report.held_out_error =
+      checks.held_out.empty() ? std::numeric_limits<double>::quiet_NaN() : checks.held_out.front().second;
+  report.exact_eigenvalues = checks.exact_eigenvalues;
+  report.fitted_eigenvalues = checks.fitted_eigenvalues;
+  report.seconds = stage.seconds();
+  report.total_seconds = stage.total_seconds();
+  report.peak_memory = peak_resident_memory();
+  return {{std::move(subspace), training.object.rest_stiffness, std::move(working.indices), std::move(working.weights)},
+          std::move(system),
+          std::move(report)};
+}
+
+/// Samples poses of the subspace, fits the forces by few components that `select` chooses, and measures the error. Any
+/// force model, subspace and selector will do; the model says where its nodes rest (rest_positions(), n × 3 [m]).
+/// Poses with inverted components are shrunk, and there are no equilibria, unless the options say otherwise. Of the
+/// options, those of the subspace and the name of the selector are not read.
+/// \throws as reduce() of a Body.
+template <ForceModel Model, Subspace S, typename Selector = NnSp>
+Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std::shared_ptr<const S> subspace,
+                           const Selector& select = {}, const ReduceOptions& options = {},
+                           const Progress& progress = {}) {
+  static_assert(explain_subset_selector<Selector>());
+  check(options);
+  StageClock stage(progress);
+  const ObjectTraits traits{.diagonal = bounding_box(system->model().rest_positions()).diagonal(),
+                            .inverted = options.poses.inverted.value_or(InvertedPoses::Shrink),
+                            .equilibria = options.equilibria.value_or(0)};
+  return reduce(std::move(system), std::move(subspace), traits, select, options, stage);
+}
+
+}  // namespace supple

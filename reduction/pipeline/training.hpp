@@ -1,0 +1,244 @@
+#pragma once
+/// \file Stages of training, from an object in a subspace to the fitting problems of its forces.
+
+#include <physics/mesh/cell_mesh.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/pipeline/reduce_options.hpp>
+#include <reduction/pipeline/stage_clock.hpp>
+#include <reduction/system/reduced_system.hpp>
+#include <reduction/training/equilibrium_fitting.hpp>
+#include <reduction/training/force_fitting.hpp>
+#include <reduction/training/training_poses.hpp>
+#include <sparse/nnls/working_set.hpp>
+#include <sparse/problem/stacked_problem.hpp>
+#include <sparse/selectors/greedy_cubature.hpp>
+
+#include <memory>
+#include <optional>
+
+namespace supple {
+
+/// Components that do the work of all, in ascending order.
+struct WorkingComponents {
+  std::vector<Index> indices;
+  Vector weights;  ///< > 0
+};
+/// Those of a selection with a positive weight: others, that a selector had to keep, do no work.
+/// \throws SolverError if a weight is negative or none is positive. \param selector  its name, for the message.
+WorkingComponents working_components(const Selection& selection, const std::string& selector);
+
+/// Those with a positive weight, in the order given.
+WorkingComponents with_positive_weights(std::span<const Index> indices, VectorIn weights);
+
+/// The seeds of what is drawn at random in a run, apart from one another. The seed of the run moves all of them.
+struct RunSeeds {
+  std::uint64_t poses, held_out, equilibria, selection;
+
+  explicit RunSeeds(const ReduceOptions& options)
+      : poses(options.poses.seed + 1000003 * options.seed),
+        held_out(poses + 7919),
+        equilibria(poses + 15485863),
+        selection(options.seed) {}
+};
+
+/// What training needs to know of an object beside its system.
+struct ObjectTraits {
+  double diagonal;  ///< the length that amplitudes are shares of [m]
+  InvertedPoses inverted;
+  Index equilibria = 0;
+  bool thin = false;  ///< buckles under large loads: equilibria have a third of them
+  std::string component_name = "components";
+};
+
+/// An object in a subspace, and what that does at rest.
+template <ForceModel F, Subspace S>
+struct ReducedObject {
+  std::shared_ptr<const FullSystem<F>> system;
+  std::shared_ptr<const S> subspace;
+  ObjectTraits traits;
+  Matrix rest_stiffness = {};  ///< UᵀK(0)U, d × d
+  ReducedModes modes = {};     ///< of it
+
+  /// The reduced system of a selection.
+  ReducedSystem<F, S> reduced_system(std::span<const Index> indices, VectorIn weights) const {
+    return {system->shared_model(), subspace, indices, weights, rest_stiffness, system->nodal_mass()};
+  }
+  /// Softest flexible eigenvalues of a reduced stiffness at rest, at most `count` [1/s²].
+  Vector softest_eigenvalues(const Matrix& stiffness, Index count = 5) const;
+};
+
+/// What a selection is made for, and what it is judged by: the object and what came out of the stages of train().
+template <ForceModel F, Subspace S>
+struct Training {
+  using Model = F;
+  using Fitting = ForceFitting<Model, S>;
+  using Equilibria = EquilibriumFitting<Model, S>;
+
+  ReducedObject<F, S> object;
+  TrainingPoses poses;
+  Fitting fitting;                                   ///< on the training poses
+  std::vector<std::pair<double, Fitting>> held_out;  ///< on fresh poses at these shares of the largest amplitude
+  std::optional<Equilibria> equilibria = {};
+
+  /// The equilibria by its own tangents; there must be some.
+  Equilibria equilibria_of(const WorkingComponents& working) const {
+    return equilibria->with_tangents_of(object.reduced_system(working.indices, working.weights));
+  }
+  /// Calls visit(problem) with what selectors solve: the training poses, above the equilibria if there are any.
+  template <typename Visitor>
+  decltype(auto) with_problem(const Visitor& visit) const {
+    if (equilibria) return visit(StackedProblem(fitting, *equilibria));
+    return visit(fitting);
+  }
+  /// Of everything that selectors solve, relative.
+  double error(const WorkingComponents& working) const {
+    return with_problem([&](const auto& problem) {
+      const Vector& b = problem.rhs();
+      return (problem.columns(working.indices).times(working.weights) - b).norm() / b.norm();
+    });
+  }
+  /// Weights fitted once more, with the tangents of the object that the components make in place of those of a rough
+  /// selection; as they are where that does not bring its equilibria nearer, or there are none.
+  WorkingComponents refitted(const WorkingComponents& working) const;
+};
+
+Vector softest_eigenvalues(const Matrix& stiffness, Index first, Index count);
+
+template <ForceModel Model, Subspace S>
+Vector ReducedObject<Model, S>::softest_eigenvalues(const Matrix& stiffness, Index count) const {
+  return supple::softest_eigenvalues(stiffness, modes.num_zero, count);
+}
+
+template <ForceModel Model, Subspace S>
+WorkingComponents Training<Model, S>::refitted(const WorkingComponents& working) const {
+  if (!equilibria) return working;
+  const auto own = equilibria_of(working);
+  const StackedProblem problem(fitting, own);
+  WorkingSet chosen(problem);
+  chosen.append(problem.columns(working.indices));
+  const WorkingComponents refit = with_positive_weights(working.indices, chosen.fit());
+  if (refit.indices.empty()) return working;
+  const bool nearer =
+      equilibria_of(refit).error(refit.indices, refit.weights) < own.error(working.indices, working.weights);
+  return nearer ? refit : working;
+}
+
+/// Random poses of an object by these options. \throws as sample_poses.
+template <ForceModel Model, Subspace S>
+TrainingPoses sample_poses(const ReducedObject<Model, S>& object, const PoseOptions& options) {
+  return sample_poses(object.system->shared_model(), *object.subspace, object.modes, object.system->nodal_mass().sum(),
+                      object.traits.diagonal, options);
+}
+
+/// The poses that the options give, or random ones.
+template <ForceModel Model, Subspace S>
+TrainingPoses training_poses(const ReducedObject<Model, S>& object, const PoseOptions& poses, const Matrix& given) {
+  if (given.size() == 0) return sample_poses(object, poses);
+  return treat_inverted(object.system->shared_model(), *object.subspace,
+                        poses_in_subspace(*object.subspace, object.system->nodal_mass(), given),
+                        object.traits.inverted);
+}
+
+/// Poses in equilibrium of a rough selection. \throws std::invalid_argument for forces without a potential.
+/// \param poses  those of training.
+template <ForceModel Model, Subspace S>
+EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& object,
+                                            const ForceFitting<Model, S>& fitting, PoseOptions poses,
+                                            const RunSeeds& seeds) {
+  if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
+    const auto& model = object.system->shared_model();
+    const ObjectTraits& traits = object.traits;
+    const Index size = std::min(fitting.cols(), 4 * object.subspace->dim());
+    const WorkingComponents working =
+        working_components(BatchedGreedy{.seed = seeds.selection}(fitting, size), "batched-greedy");
+    const auto rough = object.reduced_system(working.indices, working.weights);
+    const double largest = poses.largest_amplitude();
+    poses.count = traits.equilibria;
+    poses.amplitudes = {3 * largest, largest, 0.3 * largest};
+    if (traits.thin)
+      for (double& amplitude : poses.amplitudes) amplitude /= 3;
+    poses.seed = seeds.equilibria;
+    poses.inverted = InvertedPoses::Keep;  // of the linear responses, which nothing is trained on
+    const Matrix linear = sample_poses(object, poses).Q;
+    const Matrix relaxed =
+        treat_inverted(model, *object.subspace, equilibrium_poses(rough, object.modes, linear), traits.inverted).Q;
+    const double share = static_cast<double>(fitting.num_poses()) / static_cast<double>(traits.equilibria);
+    return {model,
+            object.subspace,
+            relaxed,
+            [&](VectorIn q) { return rough.stiffness(q); },
+            object.modes.softest_stiffness(),
+            20 + object.modes.num_zero,
+            std::sqrt(share)};
+  } else {
+    throw std::invalid_argument("equilibria need forces with a potential");
+  }
+}
+
+/// All stages of training, of an object in a subspace.
+template <ForceModel Model, Subspace S>
+Training<Model, S> train(std::shared_ptr<const FullSystem<Model>> system, std::shared_ptr<const S> subspace,
+                         ObjectTraits traits, const ReduceOptions& options, StageClock& stage) {
+  using Fitting = ForceFitting<Model, S>;
+  ReducedObject<Model, S> object{std::move(system), std::move(subspace), std::move(traits)};
+  stage("reduced stiffness", [&](auto) {
+    object.rest_stiffness = project_stiffness(*object.subspace, *object.system);
+    object.modes = reduced_modes(object.rest_stiffness, object.subspace->report.known_zero_modes());
+  });
+  const RunSeeds seeds(options);
+  PoseOptions pose_options = options.poses;
+  pose_options.seed = seeds.poses;
+  pose_options.inverted = object.traits.inverted;
+  TrainingPoses poses =
+      stage("training poses", [&](auto) { return training_poses(object, pose_options, options.given_poses); });
+  const Matrix metric = force_metric(options.norm, object.modes);
+  const auto fit = [&](const Matrix& Q, const auto& share) {
+    return Fitting(object.system->shared_model(), object.subspace, metric, Q, share);
+  };
+  Fitting fitting = stage("training forces", [&](auto share) { return fit(poses.Q, share); });
+  std::vector<std::pair<double, Fitting>> held_out;
+  if (options.held_out_poses > 0)
+    stage("held-out forces", [&](auto share) {
+      PoseOptions fresh = pose_options;
+      fresh.count = options.held_out_poses;
+      fresh.seed = seeds.held_out;
+      for (const double part : {1.0, 0.3, 0.1}) {
+        fresh.amplitudes = {part * pose_options.largest_amplitude()};
+        held_out.emplace_back(part, fit(sample_poses(object, fresh).Q, std::function<void(double)>()));
+        share(static_cast<double>(held_out.size()) / 3);
+      }
+    });
+  Training<Model, S> training{std::move(object), std::move(poses), std::move(fitting), std::move(held_out)};
+  if (training.object.traits.equilibria > 0)
+    stage("equilibria",
+          [&](auto) { training.equilibria = fit_equilibria(training.object, training.fitting, pose_options, seeds); });
+  return training;
+}
+
+/// What the stages up to the training forces have to say.
+template <ForceModel Model, Subspace S>
+ReduceReport report_of(const Training<Model, S>& training) {
+  const auto& [system, subspace, traits, rest_stiffness, modes] = training.object;
+  const TrainingPoses& poses = training.poses;
+  ReduceReport report;
+  report.nodes = system->num_nodes();
+  report.components = system->model().num_components();
+  report.fixed_nodes = system->num_nodes() - system->numbering().num_free();
+  report.dimension = subspace->dim();
+  report.omega = subspace->report.omega;
+  report.rigid_modes = subspace->report.rigid_modes;
+  report.dropped = subspace->report.dropped;
+  report.notes = subspace->report.notes;
+  report.poses = poses.Q.cols();
+  report.inverted_poses = poses.inverted;
+  report.redrawn_poses = poses.redrawn;
+  report.shrunk_poses = poses.shrunk;
+  if (poses.inverted > 0)
+    report.notes.push_back(std::to_string(poses.inverted) + " of " + std::to_string(poses.Q.cols()) +
+                           " training poses had inverted " + traits.component_name + " (" +
+                           std::to_string(poses.inverted_components) + " in all); " + std::to_string(poses.redrawn) +
+                           " draws were redrawn, " + std::to_string(poses.shrunk) + " poses shrunk");
+  return report;
+}
+
+}  // namespace supple
