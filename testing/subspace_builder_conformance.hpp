@@ -69,7 +69,7 @@ class SubspaceBuilderConformance : public testing::Test {
  protected:
   using System = decltype(Case::make());
   using Builder = decltype(Case::builder());
-  static_assert(explain_subspace_builder<Builder, System>());
+  static_assert(explain_subspace_builder<Builder>());
   static constexpr int node_dim = System::node_dim;
   static constexpr Index stencil_size = std::remove_cvref_t<decltype(std::declval<System>().model())>::stencil_size;
 

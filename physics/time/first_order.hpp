@@ -95,7 +95,10 @@ class FirstOrderIntegrator {
 
   double step_size() const { return h_; }  ///< [s]
   int order() const { return options_.method == FirstOrderMethod::BackwardEuler ? 1 : 2; }
-  EnergyBehaviour energy_behaviour() const { return EnergyBehaviour::Falls; }  ///< ½ uᵀ M u of a linear system
+  /// Of ½ uᵀ M u in a linear system.
+  EnergyBehaviour energy_behaviour() const {
+    return options_.method == FirstOrderMethod::Bdf2 ? EnergyBehaviour::Bounded : EnergyBehaviour::Falls;
+  }
   FirstOrderState at_rest() const { return FirstOrderState::at_rest(system_.dim()); }
 
   /// The rate that u implies under this load; call it after setting a state by hand.

@@ -75,4 +75,6 @@ class GeneralizedAlpha : public ImplicitIntegrator<System> {
   Coefficients with_;
 };
 
+static_assert(TimeIntegrator<GeneralizedAlpha>);
+
 }  // namespace supple

@@ -61,4 +61,6 @@ class Newmark : public ImplicitIntegrator<System> {
   double beta_, gamma_;
 };
 
+static_assert(TimeIntegrator<Newmark>);
+
 }  // namespace supple

@@ -36,6 +36,25 @@ concept TimeIntegratorFor = SemidiscreteSystem<System> &&
   { state.time } -> std::convertible_to<double&>;
 };
 
+namespace archetype {
+/// The least that integrators of second order ask for; declared only.
+struct Dynamics {
+  using MatrixType = Matrix;
+  Index dim() const;
+  const Vector& mass() const;
+  double energy(VectorIn u) const;
+  void force(VectorIn u, VectorOut f) const;
+  void stiffness(VectorIn u, Matrix& K) const;
+  const Matrix& rest_stiffness() const;
+  SystemLoad<Matrix> project(const Loads& loads) const;
+};
+static_assert(DynamicalSystem<Dynamics>);
+}  // namespace archetype
+
+/// A class template over the system whose objects integrate any DynamicalSystem.
+template <template <DynamicalSystem> typename I>
+concept TimeIntegrator = TimeIntegratorFor<I<archetype::Dynamics>, archetype::Dynamics>;
+
 /// The load at a time [s], whether it changes or not.
 template <typename MatrixType, LoadOverTime<MatrixType> L>
 decltype(auto) load_at(const L& load, double t) {
