@@ -1,5 +1,7 @@
 #include <app/commands/compare_selectors_command.hpp>
 #include <app/commands/mesh_source.hpp>
+#include <app/commands/option_checks.hpp>
+#include <app/commands/shared_options.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/selector_table.hpp>
 #include <app/report/terminal.hpp>
@@ -10,6 +12,8 @@
 #include <physics/body/force_models.hpp>
 #include <sparse/selectors/greedy_cubature.hpp>
 #include <sparse/selectors/selector_library.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 
@@ -134,6 +138,48 @@ void CompareSelectorsCommand::run() const {
   report["peak_memory"] = peak_resident_memory();
   if (!is_stdout(json)) std::fputs((title + "\n" + text + "\n\n" + table).c_str(), stdout);
   write_json(json, report);
+}
+
+void CompareSelectorsCommand::declare(CLI::App& app) {
+  CLI::App& command =
+      *app.add_subcommand("compare-selectors", "Run selectors over sizes and seeds on one fitting problem");
+  declare_problem(command, *this);
+  declare_training(command, *this);
+  const auto comparison = "Comparison";
+  command.add_option("--selectors", selectors, "Names, separated by commas")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->check(CLI::IsMember(known_selectors()))
+      ->group(comparison);
+  command
+      .add_option("--sizes", sizes,
+                  "Numbers of components, separated by commas [50,100,150,250, as far as the object has them]")
+      ->delimiter(',')
+      ->type_name("N")
+      ->group(comparison);
+  command.add_option("--runs", runs, "Seeds for each selector and size")
+      ->capture_default_str()
+      ->type_name("N")
+      ->group(comparison);
+  command
+      .add_option("--train-groups", train_groups,
+                  "Poses that 'greedy' compares components on, anew in each step [all; An et al.: 10]")
+      ->type_name("N")
+      ->check(whole_number())
+      ->group(comparison);
+  command
+      .add_flag("--trajectories", trajectories,
+                "Compare pulled motions, too; their reference evaluates every component, which takes a minute")
+      ->group(comparison);
+  command.add_option("-o,--output", output, "Folder for runs.csv, table.md, plots and the page index.html")
+      ->type_name("DIR");
+  declare_json(command, json);
+  declare_threads(command, threads);
+  command.footer(
+      "Example:\n"
+      "supple compare-selectors dragon.msh --fix 'y<4%' --selectors nn-sp,nn-htp,greedy --sizes 50,100,150 -o "
+      "comparison");
+  command.callback([this] { run(); });
 }
 
 }  // namespace supple

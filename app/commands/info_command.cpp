@@ -1,5 +1,6 @@
 #include <app/commands/info_command.hpp>
 #include <app/commands/mesh_source.hpp>
+#include <app/commands/shared_options.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
@@ -10,6 +11,8 @@
 #include <io/frames/vtu_writer.hpp>
 #include <physics/mesh/tet_mesh.hpp>
 #include <reduction/pipeline/reduced_model.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -202,6 +205,14 @@ void InfoCommand::run() const {
   write_json(json, report);
 }
 
+void InfoCommand::declare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("info", "Say what a model or a mesh holds");
+  command.add_option("SOURCE", source, "Model, mesh file or built-in mesh")->required();
+  declare_json(command, json);
+  declare_plugins(command);
+  command.callback([this] { run(); });
+}
+
 void MeshCommand::run() const {
   require_writable(output);
   const NamedMesh named = load_mesh(source);
@@ -221,6 +232,14 @@ void MeshCommand::run() const {
         }
       },
       named.mesh);
+}
+
+void MeshCommand::declare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("mesh", "Write a built-in or other mesh for ParaView");
+  command.add_option("SOURCE", source, "Mesh file or built-in mesh")->required();
+  command.add_option("-o,--output", output, "File to write")->required()->type_name("FILE.vtu");
+  command.footer(builtin_help());
+  command.callback([this] { run(); });
 }
 
 }  // namespace supple
