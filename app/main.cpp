@@ -3,6 +3,7 @@
 #include <app/commands/edit_command.hpp>
 #include <app/commands/fidelity_command.hpp>
 #include <app/commands/info_command.hpp>
+#include <app/commands/mesh_command.hpp>
 #include <app/commands/reduce_command.hpp>
 #include <app/commands/select_command.hpp>
 #include <app/commands/simulate_command.hpp>

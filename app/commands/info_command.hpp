@@ -18,13 +18,4 @@ struct InfoCommand {
   void run() const;
 };
 
-/// `supple mesh`: a built-in or a file as .vtu.
-struct MeshCommand {
-  std::string source;
-  std::filesystem::path output;
-
-  void declare(CLI::App& app);  ///< adds the subcommand, which writes into this object and calls run()
-  void run() const;
-};
-
 }  // namespace supple
