@@ -1,4 +1,5 @@
 #include <app/commands/compare_command.hpp>
+#include <app/commands/shared_options.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
@@ -9,6 +10,8 @@
 #include <core/version.hpp>
 #include <io/picture/plot.hpp>
 #include <io/table/csv.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -204,6 +207,20 @@ void CompareCommand::run() const {
     print_rows(stdout, name.first + " against " + name.second, rows);
   }
   write_json(json, report);
+}
+
+void CompareCommand::declare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("compare", "Measure how far one trajectory is from another");
+  command.add_option("FIRST", first, "Folder or trajectory file of 'supple simulate'")->required();
+  command.add_option("REFERENCE", reference, "What it is compared with")->required();
+  command.add_option("-o,--output", output, "Folder for errors.csv, errors.png and comparison.png")->type_name("DIR");
+  declare_json(command, json);
+  declare_threads(command, threads);
+  command.footer(
+      "Frames count at times that both have, up to the end of the shorter one; errors are root mean squares over\n"
+      "nodes (by mass) and frames, relative to the reference.\n"
+      "\nExample:\nsupple compare run full -o comparison");
+  command.callback([this] { run(); });
 }
 
 }  // namespace supple

@@ -2,6 +2,10 @@
 
 #include <filesystem>
 
+namespace CLI {
+class App;
+}
+
 namespace supple {
 
 /// `supple compare`: how far one trajectory is from another, the reference.
@@ -11,6 +15,7 @@ struct CompareCommand {
   std::filesystem::path json;
   int threads = 0;
 
+  void declare(CLI::App& app);  ///< adds the subcommand, which writes into this object and calls run()
   void run() const;
 };
 

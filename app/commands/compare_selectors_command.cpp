@@ -1,5 +1,7 @@
 #include <app/commands/compare_selectors_command.hpp>
 #include <app/commands/mesh_source.hpp>
+#include <app/commands/option_checks.hpp>
+#include <app/commands/shared_options.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/selector_table.hpp>
 #include <app/report/terminal.hpp>
@@ -9,8 +11,9 @@
 #include <core/stopwatch.hpp>
 #include <core/version.hpp>
 #include <physics/body/force_models.hpp>
-#include <sparse/selectors/greedy_cubature.hpp>
 #include <sparse/selectors/selector_library.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 
@@ -46,10 +49,10 @@ SelectorRun run_selector(const SelectionStudy& study, const std::string& selecto
   SelectionRequest request(size);
   request.progress = progress;
   const double before = processor_seconds();
-  const Selection selection =
-      selector == "greedy" && train_groups
-          ? GreedyCubature{.subset_groups = *train_groups, .seed = seed}(study.problem(), request)
-          : select_by_name(selector, study.problem(), request, seed);
+  const Selection selection = AnySelector(Choice::parse(selector).name == "greedy" && train_groups
+                                              ? selector + ":subset_groups=" + std::to_string(*train_groups)
+                                              : selector,
+                                          seed)(study.problem(), request);
   const double used = processor_seconds() - before;
   const auto points = static_cast<Index>((selection.weights.array() != 0).count());
   return {selector, size, seed, points, used, selection.report, study.measure(selection)};
@@ -77,7 +80,9 @@ std::string description(const CompareSelectorsCommand& command, const ReduceOpti
 void CompareSelectorsCommand::run() const {
   set_num_threads(threads);
   require_writable(json);
-  if (train_groups && std::ranges::find(selectors, "greedy") == selectors.end())
+  if (train_groups && std::ranges::none_of(selectors, [](const std::string& selector) {
+        return Choice::parse(selector).name == "greedy";
+      }))
     throw InputError("--train-groups is for the selector greedy, which is not among --selectors");
   if (runs < 1) throw InputError("--runs is " + std::to_string(runs) + ", expected at least 1");
   const Stopwatch total;
@@ -135,6 +140,49 @@ void CompareSelectorsCommand::run() const {
   report["peak_memory"] = peak_resident_memory();
   if (!is_stdout(json)) std::fputs((title + "\n" + text + "\n\n" + table).c_str(), stdout);
   write_json(json, report);
+}
+
+void CompareSelectorsCommand::declare(CLI::App& app) {
+  CLI::App& command =
+      *app.add_subcommand("compare-selectors", "Run selectors over sizes and seeds on one fitting problem");
+  declare_problem(command, *this);
+  declare_training(command, *this);
+  const auto comparison = "Comparison";
+  command.add_option("--selectors", selectors, "Names, with options if need be, separated by commas; see below")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->type_name("NAME[:OPTION=VALUE...]")
+      ->check(known_in(supple::selectors()))
+      ->group(comparison);
+  command
+      .add_option("--sizes", sizes,
+                  "Numbers of components, separated by commas [50,100,150,250, as far as the object has them]")
+      ->delimiter(',')
+      ->type_name("N")
+      ->group(comparison);
+  command.add_option("--runs", runs, "Seeds for each selector and size")
+      ->capture_default_str()
+      ->type_name("N")
+      ->group(comparison);
+  command
+      .add_option("--train-groups", train_groups,
+                  "Poses that 'greedy' compares components on, anew in each step [all; An et al.: 10]")
+      ->type_name("N")
+      ->check(whole_number())
+      ->group(comparison);
+  command
+      .add_flag("--trajectories", trajectories,
+                "Compare pulled motions, too; their reference evaluates every component, which takes a minute")
+      ->group(comparison);
+  command.add_option("-o,--output", output, "Folder for runs.csv, table.md, plots and the page index.html")
+      ->type_name("DIR");
+  declare_json(command, json);
+  declare_threads(command, threads);
+  command.footer(
+      "Example:\n"
+      "supple compare-selectors dragon.msh --fix 'y<4%' --selectors nn-sp,nn-htp,greedy --sizes 50,100,150 -o "
+      "comparison");
+  command.callback([this] { run(); });
 }
 
 }  // namespace supple

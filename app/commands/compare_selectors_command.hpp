@@ -2,6 +2,10 @@
 
 #include <app/commands/problem_options.hpp>
 
+namespace CLI {
+class App;
+}
+
 namespace supple {
 
 /// `supple compare-selectors`.
@@ -15,6 +19,7 @@ struct CompareSelectorsCommand : ProblemOptions {
   int threads = 0;
   std::filesystem::path output, json;
 
+  void declare(CLI::App& app);  ///< adds the subcommand, which writes into this object and calls run()
   void run() const;
 };
 

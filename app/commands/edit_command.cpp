@@ -1,4 +1,5 @@
 #include <app/commands/edit_command.hpp>
+#include <app/commands/shared_options.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
@@ -15,6 +16,8 @@
 #include <physics/system/node_numbering.hpp>
 #include <reduction/editing/editor.hpp>
 #include <reduction/pipeline/reduce.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -209,6 +212,28 @@ void EditCommand::run() const {
   if (missed > 0)
     warn(std::to_string(missed) + " of " + std::to_string(result.solves.size()) + " solves missed the tolerance " +
          shown(options.tolerance) + " (worst residual " + shown(worst, 2) + "); try more increments");
+}
+
+void EditCommand::declare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("edit", "Deform an object by moving handles on it");
+  command.add_option("MODEL", model, "Model that 'supple reduce' made")->required();
+  command.add_option("--scene", scene, "Handles and their motions, see docs/edit-scene.md")
+      ->required()
+      ->type_name("FILE.json");
+  command.add_flag("--full", full, "Solve the unreduced system, the reference");
+  command.add_option("--solver", solver, "Of the equilibrium [newton]")
+      ->check(CLI::IsMember({"newton", "bfgs", "nlopt"}));
+  command.add_option("--tolerance", tolerance, "Residual of a solve against its largest force [1e-6]");
+  command.add_option("--frames", frames, "What ParaView gets of every solve")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"surface", "cells", "tets", "none"}));
+  command.add_option("-o,--output", output, "Folder for picture.png, series.pvd, solves.csv, trajectory and report")
+      ->type_name("DIR");
+  declare_json(command, json);
+  declare_plugins(command);
+  declare_threads(command, threads);
+  command.footer("Example:\nsupple edit cactus.supple --scene bend.json -o bent");
+  command.callback([this] { run(); });
 }
 
 }  // namespace supple

@@ -6,6 +6,10 @@
 #include <optional>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace supple {
 
 /// `supple edit`: the shapes that an object takes as handles on it move.
@@ -19,6 +23,7 @@ struct EditCommand {
   std::filesystem::path json;
   int threads = 0;
 
+  void declare(CLI::App& app);  ///< adds the subcommand, which writes into this object and calls run()
   void run() const;
 };
 

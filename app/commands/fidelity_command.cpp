@@ -1,4 +1,6 @@
 #include <app/commands/fidelity_command.hpp>
+#include <app/commands/option_checks.hpp>
+#include <app/commands/shared_options.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
@@ -16,6 +18,8 @@
 #include <reduction/editing/editor.hpp>
 #include <reduction/pipeline/reduce.hpp>
 #include <reduction/system/galerkin_system.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -266,6 +270,29 @@ void FidelityCommand::run() const {
   }
   if (!is_stdout(json)) std::fputs(text.c_str(), stdout);
   write_json(json, report);
+}
+
+void FidelityCommand::declare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("fidelity", "Compare subspaces by the shapes that they let an object take");
+  declare_problem(command, *this);
+  command.add_option("--scene", scenes, "Handles and their motions, see docs/edit-scene.md; may be repeated")
+      ->required()
+      ->type_name("FILE.json")
+      ->expected(1)
+      ->take_all();
+  command
+      .add_option("--subspaces", subspaces,
+                  "Names, separated by commas; of the extended one's dimension, or of the next below that they can "
+                  "have (skinning: at least 12); sums as 'modal+skinning' of what their parts have")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->check(subspace_name());
+  command.add_option("-o,--output", output, "Folder for table.md, pictures of the shapes and the report")
+      ->type_name("DIR");
+  declare_json(command, json);
+  declare_threads(command, threads);
+  command.footer("Example:\nsupple fidelity cactus.off --scene bend.json -o fidelity");
+  command.callback([this] { run(); });
 }
 
 }  // namespace supple

@@ -6,6 +6,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace supple {
 
 /// `supple fidelity`: how well subspaces of one dimension hold the shapes of scenes (the paper's Table 2, Figure 9).
@@ -16,6 +20,7 @@ struct FidelityCommand : ProblemOptions {
   std::filesystem::path json;
   int threads = 0;
 
+  void declare(CLI::App& app);  ///< adds the subcommand, which writes into this object and calls run()
   void run() const;
 };
 

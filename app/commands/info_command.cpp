@@ -1,15 +1,16 @@
 #include <app/commands/info_command.hpp>
 #include <app/commands/mesh_source.hpp>
-#include <app/report/exit_guard.hpp>
+#include <app/commands/shared_options.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
 #include <core/check.hpp>
 #include <core/version.hpp>
 #include <io/builtin/builtin_meshes.hpp>
 #include <io/builtin/builtin_surfaces.hpp>
-#include <io/frames/vtu_writer.hpp>
 #include <physics/mesh/tet_mesh.hpp>
 #include <reduction/pipeline/reduced_model.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -202,25 +203,12 @@ void InfoCommand::run() const {
   write_json(json, report);
 }
 
-void MeshCommand::run() const {
-  require_writable(output);
-  const NamedMesh named = load_mesh(source);
-  const ExitGuard guard(output);
-  std::visit(
-      [&]<typename Mesh>(const Mesh& mesh) {
-        if constexpr (std::same_as<Mesh, TriangleMesh>) {
-          write_vtu(output, mesh.nodes, mesh.triangles, {});
-        } else {
-          VtuFields fields;
-          if (!mesh.region.empty()) {
-            RowMatrix region(mesh.num_cells(), 1);
-            for (Index e = 0; e < mesh.num_cells(); ++e) region(e, 0) = mesh.region[e];
-            fields.cell_data.push_back({"region", region});
-          }
-          write_vtu(output, mesh.nodes, mesh.cells, fields);
-        }
-      },
-      named.mesh);
+void InfoCommand::declare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("info", "Say what a model or a mesh holds");
+  command.add_option("SOURCE", source, "Model, mesh file or built-in mesh")->required();
+  declare_json(command, json);
+  declare_plugins(command);
+  command.callback([this] { run(); });
 }
 
 }  // namespace supple

@@ -3,6 +3,10 @@
 #include <filesystem>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace supple {
 
 /// `supple info`: what a model or a mesh holds.
@@ -10,14 +14,7 @@ struct InfoCommand {
   std::string source;  ///< model, mesh file or built-in
   std::filesystem::path json;
 
-  void run() const;
-};
-
-/// `supple mesh`: a built-in or a file as .vtu.
-struct MeshCommand {
-  std::string source;
-  std::filesystem::path output;
-
+  void declare(CLI::App& app);  ///< adds the subcommand, which writes into this object and calls run()
   void run() const;
 };
 

@@ -44,4 +44,8 @@ NamedMesh load_mesh(const std::string& spec) {
   return result;
 }
 
+std::string builtin_help() {
+  return "Built-in meshes:\n" + std::string(builtin_mesh_help) + std::string(builtin_surface_help);
+}
+
 }  // namespace supple

@@ -23,5 +23,7 @@ struct NamedMesh {
 /// .stl), anything else a solid.
 /// Tells the terminal of the notes' warnings.
 NamedMesh load_mesh(const std::string& spec);
+/// The built-ins and their sizes, for the foot of a help text.
+std::string builtin_help();
 
 }  // namespace supple

@@ -1,5 +1,7 @@
 #include <app/commands/mesh_source.hpp>
+#include <app/commands/option_checks.hpp>
 #include <app/commands/reduce_command.hpp>
+#include <app/commands/shared_options.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
@@ -11,6 +13,10 @@
 #include <io/picture/plot.hpp>
 #include <io/text/index_file.hpp>
 #include <physics/body/force_models.hpp>
+#include <physics/body/material_law.hpp>
+#include <sparse/selectors/selector_library.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -257,6 +263,56 @@ void ReduceCommand::run() const {
   json_report["peak_memory"] = report.peak_memory;
   if (!is_stdout(json)) print_summary(*this, result, report);
   write_json(json, json_report);
+}
+
+void ReduceCommand::declare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("reduce", "Make a reduced model of a mesh");
+  declare_problem(command, *this);
+  declare_training(command, *this);
+
+  const auto files = "Output";
+  command.add_option("-o,--output", model, "The model's file")->required()->type_name("MODEL")->group(files);
+  declare_json(command, json).group(files);
+  command.add_option("--picture", picture, "Picture of the object and the selected cells")
+      ->type_name("FILE.png")
+      ->group(files);
+  command.add_option("--plots", plots, "Folder for plots of the errors and of the frequencies")
+      ->type_name("DIR")
+      ->group(files);
+
+  command
+      .add_option("--points", points, "Largest number of components that stand for all [150; 1000 with --target-error]")
+      ->type_name("S")
+      ->check(whole_number())
+      ->group(method_group);
+  command.add_option("--target-error", target_error, "Take as few components as reach this training error")
+      ->type_name("SHARE")
+      ->check(positive_number())
+      ->group(method_group);
+  command.add_option("--selector", selector, "How they are chosen, see below [nn-sp; paper: nn-htp]")
+      ->type_name("NAME[:OPTION=VALUE...]")
+      ->check(known_in(selectors()))
+      ->group(method_group);
+  command
+      .add_option("--candidates", candidates,
+                  "Components that may be chosen beside --must-keep, one index a line, from 0 [all]")
+      ->type_name("FILE")
+      ->group(method_group);
+  command.add_option("--must-keep", must_keep, "Components that every choice has, unless their weight would be 0")
+      ->type_name("FILE")
+      ->group(method_group);
+  command.add_option("--warm-start", warm_start, "Earlier model of this mesh whose selection is to be improved")
+      ->type_name("MODEL")
+      ->group(method_group);
+  declare_threads(command, threads);
+  command.footer([] {
+    return material_help() + "\n" + subspace_help() + "\n" + selector_help() + "\n" + builtin_help() +
+           "\nExamples:\n"
+           "supple reduce dragon.msh -o dragon.supple --fix 'y<4%' --points 150\n"
+           "supple reduce dragon.msh -o dragon.supple --selector nn-sp:max_iterations=100:patience=20\n"
+           "supple reduce octopus -o octopus.supple --fix 'y<4%' --picture octopus.png --json -";
+  });
+  command.callback([this] { run(); });
 }
 
 }  // namespace supple

@@ -2,6 +2,10 @@
 
 #include <app/commands/problem_options.hpp>
 
+namespace CLI {
+class App;
+}
+
 namespace supple {
 
 /// `supple reduce`.
@@ -16,6 +20,7 @@ struct ReduceCommand : ProblemOptions {
   int threads = 0;
   std::filesystem::path json, picture, plots;  ///< empty: none
 
+  void declare(CLI::App& app);  ///< adds the subcommand, which writes into this object and calls run()
   void run() const;
 };
 

@@ -1,4 +1,6 @@
+#include <app/commands/option_checks.hpp>
 #include <app/commands/select_command.hpp>
+#include <app/commands/shared_options.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
 #include <core/check.hpp>
@@ -12,8 +14,9 @@
 #include <reduction/pipeline/reduce.hpp>
 #include <sparse/selection/selection_run.hpp>
 #include <sparse/selection/smallest_selection.hpp>
-#include <sparse/selectors/greedy_cubature.hpp>
 #include <sparse/selectors/selector_library.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -105,11 +108,9 @@ SelectionRequest selection_request(const SelectCommand& command, Index cols) {
 }
 
 Selection select(const SelectCommand& command, const AnyProblem& problem, const SelectionRequest& request) {
-  const auto select_once = [&](const AnyProblem& some_problem, const SelectionRequest& some) {
-    if (command.train_groups)
-      return GreedyCubature{.subset_groups = *command.train_groups, .seed = command.seed}(some_problem, some);
-    return select_by_name(command.selector, some_problem, some, command.seed);
-  };
+  const std::string groups =
+      command.train_groups ? ":subset_groups=" + std::to_string(*command.train_groups) : std::string();
+  const AnySelector select_once(command.selector + groups, command.seed);
   // without a size, each selector knows best how to look for one
   return command.target_error && command.points && command.selector != "all"
              ? smallest_selection(select_once, problem, request)
@@ -181,7 +182,7 @@ void print_summary(const SelectCommand& command, const DenseProblem& problem, co
 void SelectCommand::run() const {
   set_num_threads(threads);
   require_writable(json);
-  if (train_groups && selector != "greedy")
+  if (train_groups && Choice::parse(selector).name != "greedy")
     throw InputError("--train-groups is for --selector greedy, not for " + selector);
   const Stopwatch total;
   Matrix A = read_matrix(matrix);
@@ -222,6 +223,88 @@ void SelectCommand::run() const {
     print_stages(stdout, {{"read", read_seconds}, {"selection", report.seconds}}, total.seconds());
   }
   write_json(json, json_report);
+}
+
+namespace {
+
+void declare_matrices(CLI::App& command, SelectCommand& c) {
+  const auto problem = "Problem";
+  command.add_option("--matrix", c.matrix, "A: NumPy .npy or Matrix Market .mtx")
+      ->required()
+      ->type_name("FILE")
+      ->group(problem);
+  command.add_option("--rhs", c.rhs, "b, likewise; without: b = A 1, the sum of all columns, as cubature fits it")
+      ->type_name("FILE")
+      ->group(problem);
+  CLI::Option& held_out =
+      *command.add_option("--validate-matrix", c.validate_matrix, "Held-out rows of A, to measure the error on")
+           ->type_name("FILE")
+           ->group(problem);
+  command.add_option("--validate-rhs", c.validate_rhs, "Their b; without: their A 1, if there is no --rhs")
+      ->needs(&held_out)
+      ->type_name("FILE")
+      ->group(problem);
+  command
+      .add_option("--group-size", c.group_size,
+                  "Rows of a training pose, for --train-groups: they stand or fall together")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(whole_number())
+      ->group(problem);
+}
+
+void declare_choice(CLI::App& command, SelectCommand& c) {
+  command.add_option("--points", c.points, "Largest number of columns; may be left out with --target-error")
+      ->type_name("S")
+      ->check(whole_number())
+      ->group(method_group);
+  command.add_option("--target-error", c.target_error, "Take as few columns as reach |A w - b| / |b| <= SHARE")
+      ->type_name("SHARE")
+      ->check(positive_number())
+      ->group(method_group);
+  c.selector = known_selectors().front();  // the default that the help shows
+  command.add_option("--selector", c.selector, "How they are chosen; htp and niht give weights of any sign")
+      ->capture_default_str()
+      ->type_name("NAME[:OPTION=VALUE...]")
+      ->check(known_in(selectors()))
+      ->group(method_group);
+  command
+      .add_option("--candidates", c.candidates,
+                  "Columns that may be chosen beside --must-keep, one index a line, from 0 [all]")
+      ->type_name("FILE")
+      ->group(method_group);
+  command.add_option("--must-keep", c.must_keep, "Columns that are in the answer, if need be with weight 0")
+      ->type_name("FILE")
+      ->group(method_group);
+  command.add_option("--warm-start", c.warm_start, "Earlier report to improve: its indices and positive weights")
+      ->type_name("FILE.json")
+      ->group(method_group);
+  command
+      .add_option("--train-groups", c.train_groups,
+                  "Groups of --group-size rows that 'greedy' compares columns on, anew in each step [all]")
+      ->type_name("N")
+      ->check(whole_number())
+      ->group(method_group);
+  command.add_option("--seed", c.seed, "Of all random choices")
+      ->capture_default_str()
+      ->check(whole_number(0))
+      ->group(method_group);
+}
+
+}  // namespace
+
+void SelectCommand::declare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("select", "Choose few columns of a matrix A, with weights w: A w ~ b");
+  declare_matrices(command, *this);
+  declare_choice(command, *this);
+  declare_json(command, json);
+  declare_threads(command, threads);
+  command.footer(
+      "The indices and weights are in the report of --json. Weights are not negative, but for htp and niht.\n"
+      "\nExamples:\n"
+      "supple select --matrix A.npy --rhs b.npy --points 200 --json -\n"
+      "supple select --matrix A.mtx --target-error 0.01 --json selection.json");
+  command.callback([this] { run(); });
 }
 
 }  // namespace supple

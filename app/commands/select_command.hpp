@@ -7,6 +7,10 @@
 #include <optional>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace supple {
 
 /// `supple select`: few columns of a matrix from a file, with weights. The options as typed.
@@ -26,6 +30,7 @@ struct SelectCommand {
   int threads = 0;
   std::filesystem::path json;
 
+  void declare(CLI::App& app);  ///< adds the subcommand, which writes into this object and calls run()
   void run() const;
 };
 

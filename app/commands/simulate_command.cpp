@@ -1,3 +1,5 @@
+#include <app/commands/option_checks.hpp>
+#include <app/commands/shared_options.hpp>
 #include <app/commands/simulate_command.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
@@ -14,7 +16,11 @@
 #include <io/frames/vtu_writer.hpp>
 #include <io/picture/plot.hpp>
 #include <io/table/csv.hpp>
-#include <reduction/pipeline/reduce.hpp>
+#include <physics/load/outside_force_library.hpp>
+#include <physics/time/integrator_library.hpp>
+#include <reduction/pipeline/reduced_model.hpp>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -270,6 +276,54 @@ void SimulateCommand::run() const {
     warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) + " steps missed the tolerance " +
          shown(options.steps.tolerance) + " (worst residual " + shown(effort.worst_residual, 2) +
          "); try a shorter --step or --solver newton");
+}
+
+void SimulateCommand::declare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("simulate", "Run a scene with a reduced model, or with the full one");
+  command.add_option("MODEL", model, "Model that 'supple reduce' made")->required();
+  declare_plugins(command);
+  command
+      .add_option("--scene", scene, "Loads and springs over time, see docs/scene.md; without: pulled, then released")
+      ->type_name("FILE.json");
+  command.add_flag("--full", full, "Run the unreduced system instead: all nodes, Newton's method");
+  command.add_option("--time", time, "Duration [s], instead of the scene's")->type_name("T");
+  command.add_option("--step", step, "Time step [s], instead of the scene's")->type_name("H");
+  command.add_option("--integrator", integrator, "How it moves in time, see below [newmark]")
+      ->type_name("NAME[:OPTION=VALUE...]")
+      ->check(known_in(integrators()));
+  command.add_option("--solver", solver, "Nonlinear solver [bfgs; full: newton]")
+      ->check(CLI::IsMember(solver_names(step_solvers)));
+  command.add_option("--tolerance", tolerance, "Relative residual of a step [1e-6]")
+      ->type_name("SHARE")
+      ->check(positive_number());
+  command
+      .add_option(
+          "--precision", precision,
+          "Of the basis where components are, as kept for forces; sums are double [dense bases: single, others: "
+          "double]")
+      ->check(CLI::IsMember({"double", "single"}));
+  command.add_option("-o,--output", output, "Folder for trajectory, energies, pictures and ParaView's series.pvd")
+      ->type_name("DIR");
+  command.add_option("--every", every, "A frame after so many steps [at most 100 frames]")->type_name("N");
+  command.add_option("--frames", frames, "What ParaView gets: surface, cells or none")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"surface", "cells", "tets", "none"}));
+  command.add_option("--track", track, "Node whose displacement is recorded in every step; may be repeated")
+      ->type_name("NODE")
+      ->expected(1)
+      ->take_all();
+  declare_json(command, json);
+  declare_threads(command, threads);
+  command.footer([] {
+    return "Integrators and their options:\n" + described(integrators()) + "\nForces from outside, of scenes:\n" +
+           described(outside_forces()) +
+           "\nExamples:\n"
+           "supple simulate octopus.supple -o run\n"
+           "supple simulate octopus.supple --full --time 0.1 -o full\n"
+           "supple simulate octopus.supple --integrator generalized-alpha:rho_infinity=0.5\n"
+           "supple simulate dragon.supple --scene pull.json --step '2 ms' --json -";
+  });
+  command.callback([this] { run(); });
 }
 
 }  // namespace supple

@@ -7,6 +7,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}
+
 namespace supple {
 
 /// `supple simulate`: options override the scene, the scene overrides the defaults.
@@ -25,6 +29,7 @@ struct SimulateCommand {
   std::filesystem::path json;
   int threads = 0;
 
+  void declare(CLI::App& app);  ///< adds the subcommand, which writes into this object and calls run()
   void run() const;
 };
 

@@ -1,0 +1,34 @@
+#pragma once
+/// \file Options that several commands have, declared once: same spelling, same help.
+
+#include <filesystem>
+#include <string>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace supple {
+
+struct ProblemOptions;
+
+/// Where the help lists how a model comes about: the subspace, the training, the selection.
+constexpr auto method_group = "Method";
+
+CLI::Option& declare_json(CLI::App& command, std::filesystem::path& json);
+void declare_threads(CLI::App& command, int& threads);
+/// Plug-ins are loaded while the line is read, before anything asks for what they add.
+void declare_plugins(CLI::App& command);
+
+/// The object and the size of its subspace, for all commands that begin with a mesh.
+void declare_problem(CLI::App& command, ProblemOptions& problem);
+/// The subspace and the training, for commands that fit forces.
+void declare_training(CLI::App& command, ProblemOptions& problem);
+
+/// Sections of the help: what there is by name, with options.
+std::string material_help();
+std::string subspace_help();
+std::string selector_help();
+
+}  // namespace supple
