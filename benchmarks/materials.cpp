@@ -7,6 +7,7 @@
 #include <io/mesh/node_sets.hpp>
 #include <physics/body/solid_model.hpp>
 #include <reduction/pipeline/reduce.hpp>
+#include <reduction/pipeline/with_reduced_system.hpp>
 
 #include <algorithm>
 #include <cstdio>

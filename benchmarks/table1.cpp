@@ -9,6 +9,7 @@
 #include <io/mesh/mesh_reader.hpp>
 #include <io/mesh/node_sets.hpp>
 #include <reduction/pipeline/reduce.hpp>
+#include <reduction/pipeline/with_reduced_system.hpp>
 #include <reduction/training/pull_test.hpp>
 
 #include <CLI/CLI.hpp>
@@ -128,6 +129,8 @@ int main(int argc, char** argv) {
     out["energy_us"] = microseconds([&] { energies += system.energy(q); });
     if (!std::isfinite(energies)) throw SolverError("the energy is not finite");
     out["tangent_us"] = microseconds([&] { system.stiffness(q, K); });
+    const AnySystem<Matrix> erased = model.system();  // what a value costs beside the type known when compiling
+    out["erased_force_us"] = microseconds([&] { erased.force(q, f); });
     if (!trajectories) return;
     const PullTest pulls({{.name = "moderate", .target = 0.05},
                           {.name = "violent", .target = target},

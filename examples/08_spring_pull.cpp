@@ -5,7 +5,10 @@
 #include <io/mesh/node_sets.hpp>
 #include <io/picture/picture.hpp>
 #include <physics/body/solid_model.hpp>
+#include <physics/model/tet_elasticity.hpp>
 #include <physics/statics/static_solver.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/basis/modal_basis.hpp>
 #include <reduction/pipeline/reduce.hpp>
 #include <reduction/system/galerkin_system.hpp>
 
@@ -22,7 +25,7 @@ int main() {
 
   std::vector<PictureObject> objects;
   std::vector<Vector> shapes;
-  const auto solve = [&](const char* name, const auto& system, const auto& displacement) {
+  const auto solve = [&](const char* name, const auto& system) {
     StaticSolver solver(system);
     Vector u = Vector::Zero(system.dim());
     SolveReport report;
@@ -31,7 +34,7 @@ int main() {
       for (PointSpring& spring : part.springs) spring.displacement *= share;
       report = solver.solve(system.project(part), u);
     }
-    shapes.push_back(displacement(u));
+    shapes.push_back(system.expand(u));
     const double off = (shapes.back() - shapes.front()).norm() / shapes.front().norm();
     std::printf("%-22s %6ld unknowns, energy %.4g J, off by %.2f %%, residual %.0e\n", name,
                 static_cast<long>(system.dim()), system.energy(u), 100 * off, report.residual);
@@ -44,15 +47,12 @@ int main() {
 
   const auto full = std::make_shared<const FullSystem<Model>>(make_model<StVenantKirchhoff>(solid), solid.nodal_mass(),
                                                               solid.fixed_nodes);
-  (void)solve("full", *full, [&](VectorIn u) -> Vector { return full->expand(u); });
+  (void)solve("full", *full);
   const ReducedModel model = reduce(solid, {.modes = 12, .points = 150});
-  const double extended = with_reduced_system(model, [&](const auto& system) {
-    return solve("extended, 150 tets", system, [&](VectorIn q) -> Vector { return system.subspace().reconstruct(q); });
-  });
+  const double extended = solve("extended, 150 tets", model.system());
   const auto modes = std::make_shared<const DenseBasis>(ModalBasis{.num_modes = model.dim()}(*full));
   const GalerkinSystem<Model, DenseBasis> linear(full, modes);
-  const double off =
-      solve("linear modes, all tets", linear, [&](VectorIn q) -> Vector { return modes->reconstruct(q); });
+  const double off = solve("linear modes, all tets", linear);
   write_png("spring_pull.png", draw_picture(objects));
   return extended < off ? 0 : 1;
 }

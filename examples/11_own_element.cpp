@@ -10,7 +10,7 @@
 #include <physics/model/solid_elasticity.hpp>
 #include <physics/statics/static_solver.hpp>
 #include <reduction/basis/modal_basis.hpp>
-#include <reduction/pipeline/reduce_system.hpp>
+#include <reduction/pipeline/reduction.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,6 @@
 // The same material for programs that are built already:
 //   $ supple reduce bar --plugin ./libgent_plugin.so --material gent --parameter limit=5 -o bar.supple
-#include <physics/body/plugin.hpp>
+#include <reduction/plugin/plugin.hpp>
 
 #include "gent.hpp"
 

@@ -2,7 +2,7 @@
 #include <app/commands/problem_options.hpp>
 #include <app/commands/shared_options.hpp>
 #include <physics/body/material_law.hpp>
-#include <physics/body/plugin.hpp>
+#include <reduction/plugin/plugin.hpp>
 #include <reduction/basis/subspace_library.hpp>
 #include <sparse/selectors/selector_library.hpp>
 

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Material laws by name: what commands, files and plug-ins choose from.
 
+#include <core/registry.hpp>
 #include <physics/model/any_model.hpp>
 #include <physics/model/solid_elasticity.hpp>
 
@@ -52,6 +53,8 @@ struct MaterialLaw {
 const MaterialLaw& material_law(std::string_view name);
 /// Names: "stvk", "mooney-rivlin", "neo-hookean", "stable-neo-hookean", "corotational", "ogden", "fung" and what was added.
 std::vector<std::string> material_laws();
+/// All of them; what the functions above look into.
+Registry<MaterialLaw>& material_law_registry();
 /// Adds a law for this process. \throws std::invalid_argument if there is one of this name.
 void add_material_law(MaterialLaw law);
 

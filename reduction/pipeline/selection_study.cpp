@@ -44,7 +44,7 @@ struct SelectionStudy::Interface {
 template <typename AnyTraining>
 struct SelectionStudy::Model final : Interface {
   using Stacked = StackedProblem<typename AnyTraining::Fitting, typename AnyTraining::Equilibria>;
-  using Pulls = PullTest<decltype(std::declval<AnyTraining>().object.reduced_system({}, Vector()))>;
+  using Pulls = PullTest<AnySystem<Matrix>>;
 
   Model(AnyTraining&& some, std::vector<PullScene> pulled, StageClock& stage)
       : training(std::move(some)),
@@ -58,10 +58,10 @@ struct SelectionStudy::Model final : Interface {
       const Index m = training.fitting.cols();
       const Selection rough = NnSp{.max_iterations = 5}(any, std::min(m, 2 * training.fitting.poses().rows()));
       pulls.emplace(std::move(pulled), object.modes, object.traits.diagonal,
-                    object.reduced_system(rough.indices, rough.weights));
+                    object.any_system(rough.indices, rough.weights));
       std::vector<Index> all(m);
       std::iota(all.begin(), all.end(), Index{0});
-      const auto unfitted = object.reduced_system(all, Vector::Ones(m));
+      const auto unfitted = object.any_system(all, Vector::Ones(m));
       references = pulls->move(unfitted);
       for (std::size_t k = 0; k < references.size(); ++k) {
         this->reached.push_back(pulls->reach(unfitted, references[k].q));
@@ -93,7 +93,7 @@ struct SelectionStudy::Model final : Interface {
     }
     working = training.refitted(working);
     hold_out(working.indices, working.weights);
-    const auto system = object.reduced_system(working.indices, working.weights);
+    const auto system = object.any_system(working.indices, working.weights);
     const Vector rest = Vector::Zero(system.dim());
     measure.softest_eigenvalue = object.softest_eigenvalues(system.stiffness(rest), 1)[0] / exact_softest;
     Vector force(system.dim());

@@ -2,6 +2,7 @@
 /// \file Stages of training, from an object in a subspace to the fitting problems of its forces.
 
 #include <physics/mesh/cell_mesh.hpp>
+#include <physics/system/any_system.hpp>
 #include <physics/system/full_system.hpp>
 #include <reduction/pipeline/reduce_options.hpp>
 #include <reduction/pipeline/stage_clock.hpp>
@@ -62,6 +63,10 @@ struct ReducedObject {
   /// The reduced system of a selection.
   ReducedSystem<F, S> reduced_system(std::span<const Index> indices, VectorIn weights) const {
     return {system->shared_model(), subspace, indices, weights, rest_stiffness, system->nodal_mass()};
+  }
+  /// The same as a value, for what need not be compiled for each type of system.
+  AnySystem<Matrix> any_system(std::span<const Index> indices, VectorIn weights) const {
+    return AnySystem<Matrix>(std::make_shared<const ReducedSystem<F, S>>(reduced_system(indices, weights)));
   }
   /// Softest flexible eigenvalues of a reduced stiffness at rest, at most `count` [1/s²].
   Vector softest_eigenvalues(const Matrix& stiffness, Index count = 5) const;
@@ -151,7 +156,7 @@ EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& objec
     const Index size = std::min(fitting.cols(), 4 * object.subspace->dim());
     const WorkingComponents working =
         working_components(BatchedGreedy{.seed = seeds.selection}(fitting, size), "batched-greedy");
-    const auto rough = object.reduced_system(working.indices, working.weights);
+    const AnySystem<Matrix> rough = object.any_system(working.indices, working.weights);
     const double largest = poses.largest_amplitude();
     poses.count = traits.equilibria;
     poses.amplitudes = {3 * largest, largest, 0.3 * largest};

@@ -14,15 +14,3 @@ supple_test(rods LABEL unit LINKS supple::physics SOURCES physics/model/rods_tes
 supple_test(composite_model LABEL unit LINKS supple::reduction SOURCES physics/model/composite_model_test.cpp)
 supple_test(heat LABEL unit LINKS supple::physics
   SOURCES physics/heat/heat_conduction_test.cpp physics/time/first_order_test.cpp)
-
-if(TARGET gent_plugin)  # an example
-  foreach(plugin no_plugin other_version twice)
-    supple_plugin(${plugin} plugins/${plugin}.cpp)
-    target_include_directories(${plugin} PRIVATE ${PROJECT_SOURCE_DIR})
-    supple_build_options(${plugin})
-    set_target_properties(${plugin} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/plugins)
-  endforeach()
-  supple_test(plugin LABEL unit LINKS supple::physics supple::testing SOURCES physics/body/plugin_test.cpp)
-  target_compile_definitions(test_plugin PRIVATE SUPPLE_PLUGINS="${PROJECT_BINARY_DIR}/plugins")
-  add_dependencies(test_plugin no_plugin other_version twice gent_plugin spring_tets_plugin)
-endif()

@@ -1,5 +1,5 @@
 #include <examples/gent.hpp>
-#include <physics/body/plugin.hpp>
+#include <reduction/plugin/plugin.hpp>
 
 #undef SUPPLE_VERSION
 #define SUPPLE_VERSION "0.0.9"

@@ -1,6 +1,6 @@
 // Fails half way: what it added first must not stay.
 #include <examples/gent.hpp>
-#include <physics/body/plugin.hpp>
+#include <reduction/plugin/plugin.hpp>
 
 SUPPLE_PLUGIN(registry) {
   registry.add(supple::make_material_law<Gent>("half-way"));

@@ -9,3 +9,16 @@ supple_test(reduce LABEL unit LINKS supple::reduction SOURCES reduction/pipeline
 supple_test(selection_study LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/selection_study_test.cpp)
 supple_test(heat_reduction LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/heat_test.cpp)
 supple_test(editor LABEL unit LINKS supple::reduction SOURCES reduction/editing/editor_test.cpp)
+
+if(TARGET gent_plugin)  # an example
+  foreach(plugin no_plugin other_version twice)
+    supple_plugin(${plugin} plugins/${plugin}.cpp)
+    target_include_directories(${plugin} PRIVATE ${PROJECT_SOURCE_DIR})
+    supple_build_options(${plugin})
+    set_target_properties(${plugin} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/plugins)
+  endforeach()
+  supple_test(plugin LABEL unit LINKS supple::reduction supple::testing
+    SOURCES reduction/plugin/plugin_test.cpp)
+  target_compile_definitions(test_plugin PRIVATE SUPPLE_PLUGINS="${PROJECT_BINARY_DIR}/plugins")
+  add_dependencies(test_plugin no_plugin other_version twice gent_plugin spring_tets_plugin)
+endif()

@@ -1,6 +1,8 @@
 #pragma once
 /// \file Small irregular meshes of every element type, and solids on them.
 
+#include <physics/mesh/cell_mesh.hpp>
+#include <physics/mesh/elements.hpp>
 #include <physics/mesh/mass.hpp>
 #include <physics/model/solid_elasticity.hpp>
 #include <tests/support/meshes.hpp>

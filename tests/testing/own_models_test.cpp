@@ -44,13 +44,11 @@ INSTANTIATE_TYPED_TEST_SUITE_P(CarefulHtp, SubsetSelectorConformance, CarefulHtp
 /// Random displacements of the free nodes: a subspace to compare others with.
 struct RandomBasis {
   Index dimension = 6;
-  template <DynamicalSystem S>
-  DenseBasis operator()(const S& system) const {
-    constexpr int axes = S::node_dim;
-    RowMatrix W = random_matrix(system.num_nodes() * axes, dimension, 1, 1);
-    for (const Index v : system.numbering().fixed_nodes()) W.middleRows(v * axes, axes).setZero();
-    const Vector mass = Vector::NullaryExpr(W.rows(), [&](Index i) { return system.nodal_mass()[i / axes]; });
-    return {mass_orthonormalize(W, mass).W, {}};
+  DenseBasis operator()(const RestState& object) const {
+    const Index axes = object.node_dim;
+    RowMatrix W = random_matrix(object.numbering.num_nodes() * axes, dimension, 1, 1);
+    for (const Index v : object.numbering.fixed_nodes()) W.middleRows(v * axes, axes).setZero();
+    return {mass_orthonormalize(W, object.mass_of_rows()).W, {}};
   }
 };
 struct RandomBasisOfABar {

@@ -3,7 +3,7 @@
 #include <physics/model/solid_elasticity.hpp>
 #include <physics/time/newmark.hpp>
 #include <reduction/basis/modal_basis.hpp>
-#include <reduction/pipeline/reduce_system.hpp>
+#include <reduction/pipeline/reduction.hpp>
 
 #include <batched_omp.hpp>
 #include <cmath>

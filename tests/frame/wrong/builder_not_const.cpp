@@ -1,10 +1,9 @@
-// SubspaceBuilder: operator()(system) must be const
+// SubspaceBuilder: operator()(object) must be const
 #include <reduction/subspace/explain_subspace_builder.hpp>
 
 using namespace supple;
 
 struct RandomBasis {
-  template <DynamicalSystem S>
-  DenseBasis operator()(const S& system);
+  DenseBasis operator()(const RestState& object);
 };
 static_assert(explain_subspace_builder<RandomBasis>());

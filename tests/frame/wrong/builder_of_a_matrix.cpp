@@ -1,10 +1,9 @@
-// SubspaceBuilder: operator()(system) must return a Subspace: a DenseBasis or a NodalBasis
+// SubspaceBuilder: operator()(object) must return a Subspace, such as a DenseBasis or a NodalBasis
 #include <reduction/subspace/explain_subspace_builder.hpp>
 
 using namespace supple;
 
 struct RandomBasis {
-  template <DynamicalSystem S>
-  Matrix operator()(const S& system) const;
+  Matrix operator()(const RestState& object) const;
 };
 static_assert(explain_subspace_builder<RandomBasis>());

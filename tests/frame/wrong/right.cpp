@@ -16,8 +16,7 @@ struct FirstColumns {
   Selection operator()(const P& problem, const SelectionRequest& request) const;
 };
 struct RandomBasis {
-  template <DynamicalSystem S>
-  DenseBasis operator()(const S& system) const;
+  DenseBasis operator()(const RestState& object) const;
 };
 static_assert(explain_material<Tissue>());
 static_assert(explain_force_model<TetElasticity<Tissue>>());

@@ -137,7 +137,8 @@ TYPED_TEST(StaticTest, ASecondSolveUsesWhatTheFirstHasLearnt) {
   BfgsMemory memory;
   const auto iterations = [&] {
     Vector u = Vector::Zero(system.dim());
-    const auto report = quasi_newton_solve(problem, solver, memory, u, {.tolerance = 1e-10, .max_iterations = 60}, 1000);
+    const auto report =
+        quasi_newton_solve(problem, solver, memory, u, {.tolerance = 1e-10, .max_iterations = 60}, 1000);
     EXPECT_EQ(report.status, Status::Converged);
     EXPECT_EQ(report.tangents, 0);
     return report.iterations;
@@ -163,8 +164,8 @@ TEST(QuasiNewton, IsExactForALinearProblemWithItsJacobian) {
     ASSERT_TRUE(solver.factorize(5 * Matrix::Identity(2, 2)));
     u.setZero();
     memory.clear();
-    const SolveReport other = quasi_newton_solve(objective, solver, memory, u,
-                                                 {.tolerance = 1e-12, .max_iterations = 20}, 100);
+    const SolveReport other =
+        quasi_newton_solve(objective, solver, memory, u, {.tolerance = 1e-12, .max_iterations = 20}, 100);
     EXPECT_EQ(other.status, Status::Converged);
     EXPECT_EQ(other.tangents, 0);
     EXPECT_LE(other.iterations, (std::is_same_v<decltype(memory), BroydenMemory> ? 5 : 10));

@@ -1,8 +1,10 @@
 #include <physics/body/body.hpp>
 #include <physics/body/force_models.hpp>
+#include <physics/body/material_law.hpp>
 #include <physics/body/solid_model.hpp>
 #include <physics/material/neo_hookean.hpp>
 #include <physics/mesh/cell_mesh.hpp>
+#include <physics/mesh/mass.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
 #include <tests/support/meshes.hpp>

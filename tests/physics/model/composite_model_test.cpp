@@ -1,6 +1,9 @@
+#include <physics/mesh/mass.hpp>
 #include <physics/model/composite_model.hpp>
+#include <physics/model/discrete_shell.hpp>
 #include <physics/model/embedded_model.hpp>
 #include <physics/model/spring_model.hpp>
+#include <physics/model/tet_elasticity.hpp>
 #include <reduction/basis/modal_basis.hpp>
 #include <reduction/system/reduced_system.hpp>
 #include <testing/force_model_conformance.hpp>

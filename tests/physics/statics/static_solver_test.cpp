@@ -1,3 +1,4 @@
+#include <numerics/optimize/nlopt_minimizer.hpp>
 #include <physics/mesh/mass.hpp>
 #include <physics/model/tet_elasticity.hpp>
 #include <physics/statics/static_solver.hpp>

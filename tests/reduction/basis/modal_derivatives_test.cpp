@@ -1,3 +1,6 @@
+#include <physics/mesh/mass.hpp>
+#include <physics/model/discrete_shell.hpp>
+#include <physics/model/tet_elasticity.hpp>
 #include <physics/statics/equilibrium.hpp>
 #include <reduction/basis/force_curvature.hpp>
 #include <reduction/basis/modal_derivatives.hpp>

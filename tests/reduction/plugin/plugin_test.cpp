@@ -1,5 +1,5 @@
-#include <physics/body/plugin.hpp>
 #include <physics/body/solid.hpp>
+#include <reduction/plugin/plugin.hpp>
 #include <testing/force_model_conformance.hpp>
 #include <tests/support/meshes.hpp>
 

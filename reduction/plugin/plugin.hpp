@@ -1,7 +1,8 @@
 #pragma once
-/// \file Materials and elements of one's own in programs that are built already, from a shared library.
+/// \file Plug-ins: materials, elements, selectors, subspaces, integrators and outside forces of one's own in programs that are
+/// built already, from a shared library.
 ///
-///     #include <physics/body/plugin.hpp>
+///     #include <reduction/plugin/plugin.hpp>
 ///     SUPPLE_PLUGIN(registry) { registry.add(supple::make_material_law<MyMaterial>("my-material")); }
 ///
 /// compiled against the installed package (CMake: `supple_plugin(my_material my_material.cpp)`) makes a library that
@@ -11,20 +12,27 @@
 
 #include <core/version.hpp>
 #include <physics/body/material_law.hpp>
+#include <physics/load/outside_force_library.hpp>
+#include <physics/time/integrator_library.hpp>
+#include <reduction/basis/subspace_library.hpp>
+#include <sparse/selectors/selector_library.hpp>
 
 #include <filesystem>
 #include <string>
 
 namespace supple {
 
-/// What a plug-in adds to.
+/// What a plug-in adds to. Each throws std::invalid_argument if there is one of this name.
 class PluginRegistry {
  public:
   virtual ~PluginRegistry() = default;
   /// A law of solids; with a function `tets` of its own it may be any element of tets' nodes. Where it leaves
   /// `hexahedra` and `quadratic_tets` empty, meshes of these are refused.
-  /// \throws std::invalid_argument if there is one of this name.
   virtual void add(MaterialLaw law) = 0;
+  virtual void add(NamedSelector selector) = 0;
+  virtual void add(NamedSubspace subspace) = 0;
+  virtual void add(NamedIntegrator integrator) = 0;
+  virtual void add(NamedOutsideForce force) = 0;
 };
 
 /// Loads a plug-in and adds what it has, all or nothing; again does nothing.
