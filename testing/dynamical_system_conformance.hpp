@@ -1,5 +1,5 @@
 #pragma once
-/// \file What every DynamicalSystem promises, as a typed test suite. A system joins with a factory and one
+/// \file Test suite of what every DynamicalSystem promises, typed. A system joins with a factory and one
 /// line:
 ///
 ///     struct MySystem {

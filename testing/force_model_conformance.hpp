@@ -1,5 +1,5 @@
 #pragma once
-/// \file What every ForceModel promises, as a typed test suite. A model joins with a factory and one line:
+/// \file Test suite of what every ForceModel promises, typed. A model joins with a factory and one line:
 ///
 ///     struct MyShell {
 ///       static MyModel make();                      // small: every component is tested

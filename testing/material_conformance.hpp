@@ -1,5 +1,5 @@
 #pragma once
-/// \file What every material promises, as a typed test suite. A material joins with a case and one line:
+/// \file Test suite of what every material promises, typed. A material joins with a case and one line:
 ///
 ///     struct MyTissue {
 ///       static Tissue<double> make();               // any parameters

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What every outside force promises, as a typed test suite. A force joins with a case and one line:
+/// \file Test suite of what every outside force promises, typed. A force joins with a case and one line:
 ///
 ///     struct MyCase {
 ///       static MyForce make();

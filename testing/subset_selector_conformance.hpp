@@ -1,5 +1,5 @@
 #pragma once
-/// \file What every SubsetSelector promises. A new selector joins with
+/// \file Test suite of what every SubsetSelector promises. A new selector joins with
 /// INSTANTIATE_TYPED_TEST_SUITE_P(Mine, SubsetSelectorConformance, ::testing::Types<MySelector>); and, if it cannot be
 /// told a size or its weights are no least-squares fit, a specialisation of SelectorTraits. One whose weights may be
 /// negative says so by `static constexpr Signs signs = Signs::Any;`.

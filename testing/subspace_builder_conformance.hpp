@@ -1,5 +1,5 @@
 #pragma once
-/// \file What every SubspaceBuilder promises, as a typed test suite. A builder joins with a case and one
+/// \file Test suite of what every SubspaceBuilder promises, typed. A builder joins with a case and one
 /// line:
 ///
 ///     struct MyCase {

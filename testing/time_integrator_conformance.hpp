@@ -1,5 +1,5 @@
 #pragma once
-/// \file What every time integrator promises, as a typed test suite. An integrator joins with a case and one line:
+/// \file Test suite of what every time integrator promises, typed. An integrator joins with a case and one line:
 ///
 ///     struct MyCase {
 ///       template <typename System>                   // h [s]; the nonlinear solver's tolerance

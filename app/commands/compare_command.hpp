@@ -1,4 +1,5 @@
 #pragma once
+/// \file How far one trajectory is from another: `supple compare`.
 
 #include <filesystem>
 

@@ -178,10 +178,12 @@ void CompareSelectorsCommand::declare(CLI::App& app) {
       ->type_name("DIR");
   declare_json(command, json);
   declare_threads(command, threads);
-  command.footer(
-      "Example:\n"
-      "supple compare-selectors dragon.msh --fix 'y<4%' --selectors nn-sp,nn-htp,greedy --sizes 50,100,150 -o "
-      "comparison");
+  command.footer([] {
+    return selector_help() + "\n" + material_help() + "\n" + subspace_help() + "\n" + builtin_help() +
+           "\nExample:\n"
+           "supple compare-selectors dragon.msh --fix 'y<4%' --selectors nn-sp,nn-htp,greedy --sizes 50,100,150 -o "
+           "comparison";
+  });
   command.callback([this] { run(); });
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+/// \file Selectors over sizes and seeds on one problem: `supple compare-selectors`.
 
 #include <app/commands/problem_options.hpp>
 

@@ -1,4 +1,5 @@
 #include <app/commands/edit_command.hpp>
+#include <app/commands/option_checks.hpp>
 #include <app/commands/shared_options.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
@@ -193,14 +194,14 @@ void EditCommand::run() const {
   report["peak_memory"] = peak_resident_memory();
   if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) {
-    Rows rows{
-        {"scene", edits.description},
-        {"system", full ? "full" : "reduced, dimension " + std::to_string(reduced.dim())},
-        {"solves", std::to_string(result.solves.size()) + " by " + name_of_solver(static_solvers, options.solver) +
-                       ", " + shown(report["mean_iterations"].get<double>(), 3) + " iterations each, median " +
-                       shown(1e3 * median, 3) + " ms"},
-        {"residual", "at most " + shown(worst, 2) + ", asked for " + shown(options.tolerance)},
-        {"energy", shown(last.elastic) + " J elastic, " + shown(last.control) + " J of the handles"}};
+    Rows rows{{"scene", edits.description},
+              {"system", full ? "full" : "reduced, dimension " + std::to_string(reduced.dim())},
+              {"solves", std::to_string(result.solves.size()) + " by " +
+                             std::string(name_of_solver(static_solvers, options.solver)) + ", " +
+                             shown(report["mean_iterations"].get<double>(), 3) + " iterations each, median " +
+                             shown(1e3 * median, 3) + " ms"},
+              {"residual", "at most " + shown(worst, 2) + ", asked for " + shown(options.tolerance)},
+              {"energy", shown(last.elastic) + " J elastic, " + shown(last.control) + " J of the handles"}};
     if (reconstruction > 0)
       rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(frames_count), 3) +
                                               " ms a frame of all nodes");
@@ -226,7 +227,7 @@ void EditCommand::declare(CLI::App& app) {
   command.add_option("--tolerance", tolerance, "Residual of a solve against its largest force [1e-6]");
   command.add_option("--frames", frames, "What ParaView gets of every solve")
       ->capture_default_str()
-      ->check(CLI::IsMember({"surface", "cells", "tets", "none"}));
+      ->check(known_in(frame_writers()));
   command.add_option("-o,--output", output, "Folder for picture.png, series.pvd, solves.csv, trajectory and report")
       ->type_name("DIR");
   declare_json(command, json);

@@ -1,4 +1,5 @@
 #pragma once
+/// \file Edits by handles along a script: `supple edit`.
 
 #include <core/types.hpp>
 

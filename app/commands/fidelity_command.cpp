@@ -291,7 +291,10 @@ void FidelityCommand::declare(CLI::App& app) {
       ->type_name("DIR");
   declare_json(command, json);
   declare_threads(command, threads);
-  command.footer("Example:\nsupple fidelity cactus.off --scene bend.json -o fidelity");
+  command.footer([] {
+    return material_help() + "\n" + subspace_help() + "\n" + builtin_help() +
+           "\nExample:\nsupple fidelity cactus.off --scene bend.json -o fidelity";
+  });
   command.callback([this] { run(); });
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+/// \file Shapes in subspaces against the full solution: `supple fidelity`.
 
 #include <app/commands/problem_options.hpp>
 

@@ -1,4 +1,5 @@
 #pragma once
+/// \file Facts of a model or a mesh: `supple info`.
 
 #include <filesystem>
 #include <string>

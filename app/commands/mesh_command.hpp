@@ -1,4 +1,5 @@
 #pragma once
+/// \file Meshes written for ParaView: `supple mesh`.
 
 #include <filesystem>
 #include <string>

@@ -1,4 +1,5 @@
 #pragma once
+/// \file Reduced models from meshes: `supple reduce`.
 
 #include <app/commands/problem_options.hpp>
 

@@ -299,11 +299,13 @@ void SelectCommand::declare(CLI::App& app) {
   declare_choice(command, *this);
   declare_json(command, json);
   declare_threads(command, threads);
-  command.footer(
-      "The indices and weights are in the report of --json. Weights are not negative, but for htp and niht.\n"
-      "\nExamples:\n"
-      "supple select --matrix A.npy --rhs b.npy --points 200 --json -\n"
-      "supple select --matrix A.mtx --target-error 0.01 --json selection.json");
+  command.footer([] {
+    return "The indices and weights are in the report of --json. Weights are not negative, but for htp and niht.\n\n" +
+           selector_help() +
+           "\nExamples:\n"
+           "supple select --matrix A.npy --rhs b.npy --points 200 --json -\n"
+           "supple select --matrix A.mtx --target-error 0.01 --json selection.json";
+  });
   command.callback([this] { run(); });
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+/// \file Selections for a matrix and a vector: `supple select`.
 
 #include <core/types.hpp>
 

@@ -2,8 +2,8 @@
 #include <app/commands/problem_options.hpp>
 #include <app/commands/shared_options.hpp>
 #include <physics/body/material_law.hpp>
-#include <reduction/plugin/plugin.hpp>
 #include <reduction/basis/subspace_library.hpp>
+#include <reduction/plugin/plugin.hpp>
 #include <sparse/selectors/selector_library.hpp>
 
 #include <CLI/CLI.hpp>

@@ -58,7 +58,9 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
   const double steps = std::max(1.0, std::ceil(*scene.duration / *scene.step - 1e-6));
   if (steps > 1e8) throw InputError(shown(steps) + " steps are more than the 1e8 that a run may have");
 
-  SimulationOptions options{.step = *scene.step, .num_steps = static_cast<Index>(steps)};
+  SimulationOptions options;
+  options.step = *scene.step;
+  options.num_steps = static_cast<Index>(steps);
   options.every = scene.every.value_or((options.num_steps + 99) / 100);
   if (options.every < 1) throw InputError("--every is " + std::to_string(options.every) + ", expected at least 1");
   if (command.integrator) scene.integrator = Choice::parse(*command.integrator);
@@ -307,7 +309,7 @@ void SimulateCommand::declare(CLI::App& app) {
   command.add_option("--every", every, "A frame after so many steps [at most 100 frames]")->type_name("N");
   command.add_option("--frames", frames, "What ParaView gets: surface, cells or none")
       ->capture_default_str()
-      ->check(CLI::IsMember({"surface", "cells", "tets", "none"}));
+      ->check(known_in(frame_writers()));
   command.add_option("--track", track, "Node whose displacement is recorded in every step; may be repeated")
       ->type_name("NODE")
       ->expected(1)

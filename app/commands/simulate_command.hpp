@@ -1,4 +1,5 @@
 #pragma once
+/// \file Scenes through time: `supple simulate`.
 
 #include <core/types.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Ctrl-C ends the command at once, but never in the middle of a file.
+/// \file Guard against Ctrl-C in the middle of a file; elsewhere it ends the command at once.
 
 #include <filesystem>
 #include <mutex>

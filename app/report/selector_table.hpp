@@ -1,5 +1,5 @@
 #pragma once
-/// \file Many runs of selectors on one problem, as tables, plots and a page.
+/// \file Runs of selectors on one problem as tables, plots and a page.
 
 #include <app/report/json_report.hpp>
 #include <reduction/pipeline/selection_study.hpp>

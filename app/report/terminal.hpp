@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the command says on a terminal: a progress bar, tables, one-line messages.
+/// \file Output on a terminal: a progress bar, tables, one-line messages.
 
 #include <core/progress.hpp>
 

@@ -44,18 +44,41 @@ void draw_frames(const std::filesystem::path& path, const Points& rest, const st
   write_coloured_picture(path, objects, "displacement [m]", 1600, 800);
 }
 
+void write_surface(const FrameToWrite& frame, VtuSeries& series) {
+  const Points displacement = frame.surface.rows(as_points(frame.u));
+  series.add(
+      frame.time, frame.surface.rows(node_positions(frame.body)) + displacement, frame.surface.triangles,
+      {.point_data = {{"displacement [m]", displacement}, {"velocity [m/s]", frame.surface.rows(as_points(frame.v))}}});
+}
+
+/// Of a shell, whose cells are its surface, the surface.
+void write_cells(const FrameToWrite& frame, VtuSeries& series) {
+  if (std::holds_alternative<Shell>(frame.body)) return write_surface(frame, series);
+  visit_solid(frame.body, [&](const auto& solid) {
+    series.add(frame.time, solid.mesh.nodes + as_points(frame.u), solid.mesh.cells,
+               {.point_data = {vector_field("displacement [m]", frame.u), vector_field("velocity [m/s]", frame.v)}});
+  });
+}
+
 }  // namespace
+
+Registry<NamedFrames>& frame_writers() {
+  static Registry<NamedFrames> all("kind of frames", {{"surface", "the surface, as triangles", {}, write_surface},
+                                                      {"cells", "all cells of a solid", {}, write_cells},
+                                                      {"tets", "the same as cells", {}, write_cells},
+                                                      {"none", "nothing", {}, {}}});
+  return all;
+}
 
 double write_frames(const std::filesystem::path& folder, const std::string& frames, const ReducedModel& model,
                     const Trajectory& trajectory, const std::function<std::string(double)>& caption,
                     const Progress& progress) {
-  const Points& nodes = node_positions(model.body);
   const Surface surface(model.body);
-  const Points rest = surface.rows(nodes);
+  const Points rest = surface.rows(node_positions(model.body));
   const std::filesystem::path list = folder / "series.pvd";
-  const bool all_cells = frames == "cells" || frames == "tets";
+  const auto& write = frame_writers().at(frames).write;
   std::optional<VtuSeries> series;
-  if (frames != "none") {
+  if (write) {
     const ExitGuard guard;
     if (std::filesystem::exists(list))  // an earlier run may have left more frames than this one has
       for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -73,15 +96,7 @@ double write_frames(const std::filesystem::path& folder, const std::string& fram
     if (series) {
       const Vector v = frame_velocity(trajectory, model, f);
       const ExitGuard guard;
-      if (all_cells && !std::holds_alternative<Shell>(model.body))
-        visit_solid(model.body, [&](const auto& solid) {
-          series->add(trajectory.time[f], nodes + as_points(u), solid.mesh.cells,
-                      {.point_data = {vector_field("displacement [m]", u), vector_field("velocity [m/s]", v)}});
-        });
-      else
-        series->add(trajectory.time[f], rest + surface_displacement.back(), surface.triangles,
-                    {.point_data = {{"displacement [m]", surface_displacement.back()},
-                                    {"velocity [m/s]", surface.rows(as_points(v))}}});
+      write({model.body, surface, trajectory.time[f], u, v}, *series);
     }
     tell(progress, "frames", static_cast<double>(f + 1) / static_cast<double>(trajectory.num_frames()));
   }

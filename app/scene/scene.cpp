@@ -1,3 +1,4 @@
+#include <app/report/terminal.hpp>
 #include <app/scene/scene.hpp>
 #include <app/scene/solver_names.hpp>
 #include <app/scene/surface.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What happens to an object: loads and springs over time, from a JSON file; see docs/scene.md.
+/// \file Scene of what happens to an object: loads and springs over time, from a JSON file; see docs/scene.md.
 
 #include <core/registry.hpp>
 #include <core/types.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file A scene run through time, and what is recorded on the way.
+/// \file Simulation of a scene, and what is recorded on the way.
 
 #include <app/scene/scene.hpp>
 #include <core/progress.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The surface of a mesh, as pictures and ParaView see it.
+/// \file Surface of a mesh, as pictures and ParaView see it.
 
 #include <io/picture/picture.hpp>
 #include <physics/body/body.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What Anasazi asks of vectors and operators, answered with Eigen. Private: heavy headers.
+/// \file Vectors and operators of Eigen as Anasazi asks for them. Private: heavy headers.
 
 #include <core/parallel.hpp>
 #include <core/random.hpp>

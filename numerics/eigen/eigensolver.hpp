@@ -1,5 +1,5 @@
 #pragma once
-/// \file The lowest vibration modes of K φ = ω² M φ.
+/// \file Eigensolver for the lowest pairs of K φ = ω² M φ.
 
 #include <core/progress.hpp>
 #include <core/report.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Telling motions without energy from soft ones. Internal to reduction/.
+/// \file Bound that tells motions without energy from soft ones.
 
 #include <core/types.hpp>
 

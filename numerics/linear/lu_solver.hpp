@@ -1,5 +1,5 @@
 #pragma once
-/// \file One face for solves with matrices that need not be symmetric, sparse or dense.
+/// \file Solver for matrices that need not be symmetric, sparse or dense.
 
 #include <core/check.hpp>
 #include <numerics/linear/matrix_sums.hpp>

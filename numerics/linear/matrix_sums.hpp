@@ -1,5 +1,5 @@
 #pragma once
-/// \file The few sums that assembling a system matrix takes, sparse or dense.
+/// \file Sums of matrices that assembling a system takes, sparse or dense.
 
 #include <core/check.hpp>
 

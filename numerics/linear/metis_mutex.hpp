@@ -1,5 +1,5 @@
 #pragma once
-/// \file Who may order a matrix. Private.
+/// \file Mutex around METIS ordering. Private.
 
 #include <mutex>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Holds BLAS to one thread for a while. Private.
+/// \file Guard that holds BLAS to one thread for a while. Private.
 
 #include <dlfcn.h>
 #include <mutex>

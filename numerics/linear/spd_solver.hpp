@@ -1,5 +1,5 @@
 #pragma once
-/// \file One face for symmetric positive definite solves, sparse or dense.
+/// \file Solver for symmetric positive definite matrices, sparse or dense.
 
 #include <core/check.hpp>
 #include <numerics/linear/cholmod_solver.hpp>

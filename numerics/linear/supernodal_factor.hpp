@@ -1,5 +1,5 @@
 #pragma once
-/// \file The numbers of a sparse Cholesky factor, computed and applied along the elimination tree. Private.
+/// \file Numbers of a sparse Cholesky factor, computed and applied along the elimination tree. Private.
 
 #include <core/types.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What steps tell about a Hessian.
+/// \file Memory of steps, and the inverse Hessian that they tell of.
 
 #include <core/check.hpp>
 

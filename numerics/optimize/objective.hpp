@@ -1,5 +1,5 @@
 #pragma once
-/// \file Smooth functions and equations, as nonlinear solvers see them, and what a solve is asked and says.
+/// \file Objectives and equations as nonlinear solvers see them, limits and reports of a solve.
 
 #include <core/report.hpp>
 

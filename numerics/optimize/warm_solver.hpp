@@ -1,5 +1,5 @@
 #pragma once
-/// \file A choice of nonlinear solvers, and what one keeps from solve to solve.
+/// \file Nonlinear solver of any kind, with what it keeps from solve to solve.
 
 #include <numerics/optimize/line_search_bfgs.hpp>
 #include <numerics/optimize/newton.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Any deformable object as plain data: a solid or a shell.
+/// \file Deformable object of any kind as plain data: a solid or a shell.
 
 #include <core/check.hpp>
 #include <physics/body/shell.hpp>

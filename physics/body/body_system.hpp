@@ -1,5 +1,5 @@
 #pragma once
-/// \file The full system of any object, as a value.
+/// \file Full system of any object, as a value.
 
 #include <physics/body/body.hpp>
 #include <physics/system/any_system.hpp>

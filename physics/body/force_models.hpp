@@ -1,5 +1,5 @@
 #pragma once
-/// \file The force model of any object, its type erased.
+/// \file Force model of any object, its type erased.
 
 #include <physics/body/body.hpp>
 #include <physics/model/any_model.hpp>

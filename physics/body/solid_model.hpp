@@ -1,5 +1,5 @@
 #pragma once
-/// \file The force model of a solid, of its own type.
+/// \file Force model of a solid, of its own type.
 
 #include <physics/body/material_law.hpp>
 #include <physics/body/solid.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What acts on an object from outside, given on its nodes.
+/// \file Loads on the nodes of an object.
 
 #include <core/types.hpp>
 #include <physics/load/outside_force.hpp>

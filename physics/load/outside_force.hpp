@@ -1,5 +1,5 @@
 #pragma once
-/// \file The seam for what acts on an object from outside: wind, obstacles, pressure, your own.
+/// \file Forces from outside as a seam: wind, obstacles, pressure, your own.
 
 #include <core/types.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file A soft floor: an outside force that keeps nodes above a plane.
+/// \file Soft floor: an outside force that keeps nodes above a plane.
 
 #include <core/registry.hpp>
 #include <physics/load/outside_force.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What acts on a system, in its unknowns.
+/// \file Load on a system, in its unknowns.
 
 #include <core/check.hpp>
 #include <numerics/linear/matrix_sums.hpp>

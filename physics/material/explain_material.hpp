@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a material lacks, in words, as the compiler's first error.
+/// \file Check that says in words, as the compiler's first error, what a material lacks.
 
 #include <physics/material/material_response.hpp>
 

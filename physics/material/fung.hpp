@@ -1,5 +1,5 @@
 #pragma once
-/// \file Tissue: exponential stiffening, with fibres.
+/// \file Soft tissue that stiffens exponentially, with fibres (Fung).
 
 #include <physics/material/materials.hpp>
 

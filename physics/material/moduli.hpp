@@ -1,5 +1,5 @@
 #pragma once
-/// \file The two numbers of an isotropic material.
+/// \file Young's modulus and Poisson's ratio, the two numbers of an isotropic material.
 
 namespace supple {
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The rotation in a deformation gradient, and principal axes: for numbers and packs, without branches.
+/// \file Rotation in a deformation gradient, and principal axes: for numbers and packs, without branches.
 
 #include <core/pack.hpp>
 #include <core/types.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file How much a thin shell resists bending and stretching.
+/// \file Coefficients of a thin shell against bending and stretching.
 
 #include <physics/material/moduli.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The geometry of a solid: cells over nodes.
+/// \file Meshes of solids: cells over nodes.
 
 #include <physics/mesh/mesh_numbers.hpp>
 #include <physics/mesh/node_components.hpp>

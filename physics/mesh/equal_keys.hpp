@@ -1,5 +1,5 @@
 #pragma once
-/// \file Finds the edges and faces that elements share: equal tuples of node numbers.
+/// \file Search for edges and faces that elements share: equal tuples of node numbers.
 
 #include <core/types.hpp>
 

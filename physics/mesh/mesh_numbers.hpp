@@ -1,5 +1,5 @@
 #pragma once
-/// \file How messages call the parts of a mesh.
+/// \file Numbers by which messages call the parts of a mesh.
 
 #include <cstdint>
 #include <vector>

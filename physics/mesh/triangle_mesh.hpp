@@ -1,5 +1,5 @@
 #pragma once
-/// \file The geometry of a shell: triangles over nodes.
+/// \file Meshes of surfaces: triangles over nodes.
 
 #include <core/types.hpp>
 #include <physics/mesh/mesh_numbers.hpp>

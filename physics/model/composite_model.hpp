@@ -1,5 +1,5 @@
 #pragma once
-/// \file One object of several force models: a shell with springs, tets with a skin, two laws.
+/// \file Sum of several force models on one object: a shell with springs, tets with a skin, two laws.
 
 #include <core/check.hpp>
 #include <physics/model/term_pack.hpp>

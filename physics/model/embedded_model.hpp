@@ -1,5 +1,5 @@
 #pragma once
-/// \file A force model on some of the nodes of a larger object.
+/// \file Force model on some of the nodes of a larger object.
 
 #include <core/check.hpp>
 #include <physics/model/term_pack.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a force model lacks, in words, as the compiler's first error.
+/// \file Check that says in words, as the compiler's first error, what a force model lacks.
 
 #include <physics/model/force_model.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What acts between nodes: forces, or fluxes, that are sums of local terms.
+/// \file Force models: forces between nodes, or fluxes, that are sums of local terms.
 
 #include <core/types.hpp>
 

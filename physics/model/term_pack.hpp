@@ -1,5 +1,5 @@
 #pragma once
-/// \file Eight terms of a force model evaluated as one, lane by lane.
+/// \file Pack of eight terms of a force model, evaluated lane by lane.
 
 #include <core/pack.hpp>
 #include <physics/model/force_model.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Any system of an object in ℝ³, full or reduced, as a value.
+/// \file System of an object in ℝ³, full or reduced, its type erased: a value.
 
 #include <physics/system/dynamical_system.hpp>
 

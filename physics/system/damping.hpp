@@ -1,5 +1,5 @@
 #pragma once
-/// \file The two coefficients of Rayleigh damping.
+/// \file Rayleigh damping by its two coefficients.
 
 namespace supple {
 

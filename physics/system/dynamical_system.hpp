@@ -1,5 +1,5 @@
 #pragma once
-/// \file What integrators and static solvers see: the full system (sparse) and the reduced system (dense)
+/// \file Systems as integrators and static solvers see them: full (sparse) and reduced (dense)
 /// alike.
 
 #include <core/types.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The unreduced system: every node, sparse matrices.
+/// \file Full system: every node, sparse matrices.
 
 #include <core/check.hpp>
 #include <core/pack.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Which nodes are unknowns, which components touch a node, and the sparsity pattern that follows.
+/// \file Numbering of free nodes, components at each node, and the sparsity pattern that follows.
 
 #include <core/types.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file An object at rest, as the construction of subspaces sees it.
+/// \file Object at rest, as the construction of subspaces sees it.
 
 #include <core/check.hpp>
 #include <core/types.hpp>

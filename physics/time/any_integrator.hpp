@@ -1,5 +1,5 @@
 #pragma once
-/// \file Any integrator of second order for a system, as a value.
+/// \file Integrator of second order, its type erased: a value.
 
 #include <physics/time/time_integrator.hpp>
 

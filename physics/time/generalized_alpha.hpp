@@ -1,5 +1,5 @@
 #pragma once
-/// \file The generalised-α method: second order, and what is too fast for the step dies out.
+/// \file Generalised-α method: second order, and what is too fast for the step dies out.
 
 #include <physics/time/implicit_step.hpp>
 

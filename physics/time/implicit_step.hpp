@@ -1,5 +1,5 @@
 #pragma once
-/// \file One implicit step of second order as a minimisation: what Newmark's method and its relatives share.
+/// \file Implicit step of second order as a minimisation: what Newmark's method and its relatives share.
 
 #include <numerics/optimize/warm_solver.hpp>
 #include <physics/system/damping.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Where a moving object is, and what a step took to get it there.
+/// \file State of a moving object, and the report of a step.
 
 #include <core/types.hpp>
 #include <numerics/optimize/objective.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The seam for how a system moves in time.
+/// \file Time integrators as a seam: how a system moves.
 
 #include <physics/load/system_load.hpp>
 #include <physics/system/dynamical_system.hpp>

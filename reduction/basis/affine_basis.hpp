@@ -1,5 +1,5 @@
 #pragma once
-/// \file The affine motions of a free object.
+/// \file Affine motions of a free object as a subspace.
 
 #include <reduction/subspace/rigid_modes.hpp>
 #include <reduction/subspace/subspace_builder.hpp>

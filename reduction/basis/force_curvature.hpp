@@ -1,5 +1,5 @@
 #pragma once
-/// \file The second derivative of the internal force at rest.
+/// \file Second derivative of the internal force at rest.
 
 #include <physics/system/rest_state.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The sum of two subspaces.
+/// \file Sum of two subspaces.
 
 #include <reduction/basis/affine_basis.hpp>
 #include <reduction/basis/modal_basis.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file How vibration modes change as the object deforms: subspaces for large deformations.
+/// \file Modal derivatives, by which vibration modes change as the object deforms: subspaces for large deformations.
 
 #include <physics/system/rest_state.hpp>
 #include <reduction/basis/modal_basis.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Deformation-based editing: the shape of least energy under handles (Eq. 3 and Sec. 6).
+/// \file Editor by deformation: the shape of least energy under handles (Eq. 3 and Sec. 6).
 
 #include <physics/statics/static_solver.hpp>
 #include <reduction/editing/handles.hpp>

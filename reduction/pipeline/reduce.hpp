@@ -1,5 +1,5 @@
 #pragma once
-/// \file The main job in one call: from a solid or a shell to a reduced model with a measured error.
+/// \file Main job in one call: from a solid or a shell to a reduced model with a measured error.
 
 #include <core/progress.hpp>
 #include <reduction/pipeline/reduce_options.hpp>

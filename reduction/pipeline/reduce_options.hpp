@@ -1,5 +1,5 @@
 #pragma once
-/// \file What reduce() is asked for and what it answers, as plain data.
+/// \file Options and report of reduce(), as plain data.
 
 #include <core/types.hpp>
 #include <reduction/basis/subspace_choice.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The few components that stand for all, in a subspace.
+/// \file Selected components that stand for all, in a subspace.
 
 #include <core/types.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file A reduced model as data: what `reduce` makes, files keep, and simulations load.
+/// \file Reduced model as data: what `reduce` makes, files keep, and simulations load.
 
 #include <physics/body/body.hpp>
 #include <physics/system/any_system.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The main job for force models, subspaces and selectors of one's own types.
+/// \file Main job for force models, subspaces and selectors of one's own types.
 
 #include <core/peak_memory.hpp>
 #include <reduction/pipeline/reduced_forces.hpp>
@@ -7,6 +7,7 @@
 #include <sparse/selection/explain_subset_selector.hpp>
 #include <sparse/selection/smallest_selection.hpp>
 #include <sparse/selectors/nn_sp.hpp>
+#include <sparse/selectors/selector_library.hpp>
 
 #include <limits>
 #include <memory>
@@ -40,8 +41,14 @@ Selection select_components(const Training<Model, S>& training, const Selector& 
     request.validate = [&](const std::vector<Index>& indices, VectorIn weights) {
       return training.held_out.front().second.error(indices, weights);
     };
-  return training.with_problem([&](const auto& problem) {
+  const auto run = [&](const auto& problem) {
     return options.target_error > 0 ? smallest_selection(select, problem, request) : select(problem, request);
+  };
+  return training.with_problem([&](const auto& problem) {
+    if constexpr (std::same_as<Selector, AnySelector>)
+      return run(AnyProblem(problem));
+    else
+      return run(problem);
   });
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file One problem, many selections: what each is worth beyond its training error.
+/// \file Study of many selections on one problem: what each is worth beyond its training error.
 
 #include <core/progress.hpp>
 #include <physics/body/body.hpp>

@@ -11,6 +11,7 @@
 #include <reduction/training/force_fitting.hpp>
 #include <reduction/training/training_poses.hpp>
 #include <sparse/nnls/working_set.hpp>
+#include <sparse/problem/any_problem.hpp>
 #include <sparse/problem/stacked_problem.hpp>
 #include <sparse/selectors/greedy_cubature.hpp>
 
@@ -118,7 +119,8 @@ template <ForceModel Model, Subspace S>
 WorkingComponents Training<Model, S>::refitted(const WorkingComponents& working) const {
   if (!equilibria) return working;
   const auto own = equilibria_of(working);
-  const StackedProblem problem(fitting, own);
+  const StackedProblem stacked(fitting, own);
+  const AnyProblem problem(stacked);  // what fits is compiled once, not for each type of problem
   WorkingSet chosen(problem);
   chosen.append(problem.columns(working.indices));
   const WorkingComponents refit = with_positive_weights(working.indices, chosen.fit());
@@ -155,7 +157,7 @@ EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& objec
     const ObjectTraits& traits = object.traits;
     const Index size = std::min(fitting.cols(), 4 * object.subspace->dim());
     const WorkingComponents working =
-        working_components(BatchedGreedy{.seed = seeds.selection}(fitting, size), "batched-greedy");
+        working_components(BatchedGreedy{.seed = seeds.selection}(AnyProblem(fitting), size), "batched-greedy");
     const AnySystem<Matrix> rough = object.any_system(working.indices, working.weights);
     const double largest = poses.largest_amplitude();
     poses.count = traits.equilibria;

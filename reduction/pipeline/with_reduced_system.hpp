@@ -1,5 +1,5 @@
 #pragma once
-/// \file The reduced system of a model, of its own type.
+/// \file Reduced system of a model, of its own type.
 
 #include <physics/body/force_models.hpp>
 #include <reduction/pipeline/reduced_model.hpp>

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Plug-ins: materials, elements, selectors, subspaces, integrators and outside forces of one's own in programs that are
-/// built already, from a shared library.
+/// \file Plug-ins: materials, elements, selectors, subspaces, integrators and outside forces of one's own, from a shared
+/// library, in programs that are built already.
 ///
 ///     #include <reduction/plugin/plugin.hpp>
 ///     SUPPLE_PLUGIN(registry) { registry.add(supple::make_material_law<MyMaterial>("my-material")); }

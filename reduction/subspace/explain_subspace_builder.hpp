@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a builder of subspaces lacks, in words, as the compiler's first error.
+/// \file Check that says in words, as the compiler's first error, what a builder of subspaces lacks.
 
 #include <reduction/subspace/subspace_builder.hpp>
 

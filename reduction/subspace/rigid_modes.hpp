@@ -1,5 +1,5 @@
 #pragma once
-/// \file Motions that cost no energy at rest, known in closed form.
+/// \file Rigid and affine motions of free parts, in closed form.
 
 #include <physics/mesh/node_components.hpp>
 #include <physics/system/node_numbering.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The seam where subspaces come in.
+/// \file Builders of subspaces as a seam.
 
 #include <physics/system/rest_state.hpp>
 #include <reduction/subspace/subspace.hpp>

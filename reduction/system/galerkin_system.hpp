@@ -1,5 +1,5 @@
 #pragma once
-/// \file The exact reduced system: every component, in a subspace.
+/// \file Galerkin system, the exact reduced one: every component, in a subspace.
 
 #include <physics/system/full_system.hpp>
 #include <reduction/system/reduced_modes.hpp>

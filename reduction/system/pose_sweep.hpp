@@ -1,5 +1,5 @@
 #pragma once
-/// \file Evaluating every component of a model at many poses of a subspace, eight poses at a time.
+/// \file Sweep of all components of a model over many poses of a subspace, eight poses at a time.
 
 #include <core/pack.hpp>
 #include <core/parallel.hpp>

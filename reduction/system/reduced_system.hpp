@@ -1,5 +1,5 @@
 #pragma once
-/// \file The reduced system: selected components in a subspace, dense matrices.
+/// \file Reduced system: selected components in a subspace, dense matrices.
 
 #include <core/check.hpp>
 #include <core/single_pack.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Fitting where objects come to rest: poses in equilibrium, and errors of the force as displacements there.
+/// \file Fitting problem where objects come to rest: poses in equilibrium, errors of the force as displacements.
 
 #include <physics/statics/static_solver.hpp>
 #include <reduction/training/force_fitting.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Fitting the reduced force by few components: A w ≈ b of Eqs. 5 and 6 without ever forming A.
+/// \file Fitting problem of the reduced force by few components: A w ≈ b of Eqs. 5 and 6 without ever forming A.
 
 #include <reduction/system/pose_sweep.hpp>
 #include <reduction/system/reduced_modes.hpp>

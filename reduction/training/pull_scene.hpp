@@ -1,5 +1,5 @@
 #pragma once
-/// \file One pull of an object, by which a selection is judged.
+/// \file Pull of an object, by which a selection is judged.
 
 #include <core/types.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file How far a selection leads a motion astray: pulls of an object, beside the same subspace with all
+/// \file Test of how far a selection leads a motion astray: pulls of an object, beside the same subspace with all
 /// components.
 
 #include <core/parallel.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Poses to train on: random points of the subspace, scaled by the object's own stiffness, or states observed.
+/// \file Training poses: random points of the subspace, scaled by the object's own stiffness, or states observed.
 
 #include <core/random.hpp>
 #include <reduction/system/pose_sweep.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The active-set method of non-negative least squares, written once over a factor of the passive
+/// \file Active-set method of non-negative least squares, written once over a factor of the passive
 /// columns. Internal to sparse/.
 
 #include <core/report.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Least squares whatever the units of A and b. Internal to sparse/.
+/// \file Scaling by powers of two, for least squares in any units of A and b. Internal to sparse/.
 
 #include <sparse/nnls/nnls.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Taking columns out of a least-squares fit, the least missed first.
+/// \file Backward elimination: columns leave a least-squares fit, the least missed first.
 
 #include <core/types.hpp>
 

@@ -1,4 +1,5 @@
 #pragma once
+/// \file Signs that weights may have.
 
 namespace supple {
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file A Cholesky factor that follows its matrix when rows and columns come and go.
+/// \file Cholesky factor that follows its matrix when rows and columns come and go.
 
 #include <core/types.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The columns that a selector currently works with, and what their least-squares fit needs.
+/// \file Columns that a selector currently works with, and what their least-squares fit needs.
 
 #include <sparse/nnls/nnls.hpp>
 #include <sparse/nnls/signs.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file A fitting problem whose type is known at run time only, so that selectors chosen by name compile
+/// \file Fitting problem whose type is known at run time only, so that selectors chosen by name compile
 /// once.
 
 #include <sparse/problem/fitting_problem.hpp>

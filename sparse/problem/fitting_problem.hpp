@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a selector asks of a least-squares problem A w ≈ b: columns on demand, never all of A.
+/// \file Least-squares problems A w ≈ b as selectors see them: columns on demand, never all of A.
 
 #include <core/check.hpp>
 #include <core/types.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a selector lacks, in words, as the compiler's first error.
+/// \file Check that says in words, as the compiler's first error, what a selector lacks.
 
 #include <sparse/selection/subset_selector.hpp>
 

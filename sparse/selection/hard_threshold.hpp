@@ -1,5 +1,5 @@
 #pragma once
-/// \file The steps of iterative hard thresholding, and its projections H_s and H_s⁺ as sets of positions.
+/// \file Steps of iterative hard thresholding, and its projections H_s and H_s⁺ as sets of positions.
 
 #include <core/types.hpp>
 #include <sparse/nnls/signs.hpp>

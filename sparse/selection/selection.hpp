@@ -1,5 +1,5 @@
 #pragma once
-/// \file What a selector is asked for, and what it answers.
+/// \file Request to a selector, and its answer.
 
 #include <core/progress.hpp>
 #include <core/report.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What all selectors do alike: check the request, evaluate columns, keep the best iterate, account for
+/// \file Run of a selector, what all do alike: check the request, evaluate columns, keep the best iterate, account for
 /// it all.
 
 #include <core/random.hpp>

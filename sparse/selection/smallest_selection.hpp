@@ -1,5 +1,5 @@
 #pragma once
-/// \file A target error for selectors that need a size.
+/// \file Search for the smallest size that reaches an error, for selectors that need a size.
 
 #include <sparse/selection/selection_run.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The concept of a best-subset selector: min ‖A w − b‖ subject to w ≥ 0, |supp w| ≤ s (von Tycowicz et
+/// \file Concept of a best-subset selector: min ‖A w − b‖ subject to w ≥ 0, |supp w| ≤ s (von Tycowicz et
 /// al. 2013, Eq. 6).
 
 #include <sparse/problem/fitting_problem.hpp>

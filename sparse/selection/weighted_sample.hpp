@@ -1,5 +1,5 @@
 #pragma once
-/// \file Drawing without replacement where some are wanted more often than others.
+/// \file Random sample without replacement, by weights.
 
 #include <core/random.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Floor and ceiling of a comparison.
+/// \file Baselines: columns at random and all columns, floor and ceiling of a comparison.
 
 #include <sparse/selection/selection_run.hpp>
 #include <sparse/selection/smallest_selection.hpp>

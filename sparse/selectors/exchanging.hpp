@@ -1,5 +1,5 @@
 #pragma once
-/// \file Trading columns of a least-squares fit for others, as long as that helps.
+/// \file Exchanges of columns of a least-squares fit for others, as long as that helps.
 
 #include <core/types.hpp>
 

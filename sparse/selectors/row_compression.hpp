@@ -1,5 +1,5 @@
 #pragma once
-/// \file Choosing on fewer rows: seeded sketches of A and b, and the exact refit of what was chosen.
+/// \file Compression of rows to choose on: seeded sketches of A and b, and the exact refit of what was chosen.
 
 #include <core/parallel.hpp>
 #include <core/random.hpp>

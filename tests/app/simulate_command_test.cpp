@@ -69,6 +69,65 @@ TEST_F(SimulateCommandTest, WritesWhatItReports) {
   EXPECT_GT(read_png(folder / "run/energy.png").width, 300);
 }
 
+TEST_F(SimulateCommandTest, TakesTheIntegratorOfTheSceneOrTheLine) {
+  reduce_bar();
+  const json plain = report({"simulate", "bar.supple", "--time", "0.3", "-o", "plain"});
+  EXPECT_EQ(plain["integrator"], "newmark");
+  // average acceleration by any of its names is the same motion to the last bit
+  const json named =
+      report({"simulate", "bar.supple", "--time", "0.3", "--integrator", "newmark:beta=0.25:gamma=0.5", "-o", "named"});
+  EXPECT_EQ(named["integrator_options"]["beta"], "0.25");
+  EXPECT_EQ(read("named/tracked.csv"), read("plain/tracked.csv"));
+  // what is too fast for the step dies out
+  const json damped = report(
+      {"simulate", "bar.supple", "--time", "0.3", "--integrator", "generalized-alpha:rho_infinity=0", "-o", "damped"});
+  EXPECT_EQ(damped["integrator"], "generalized-alpha");
+  EXPECT_NE(read("damped/tracked.csv"), read("plain/tracked.csv"));
+  write("scene.json", R"({"duration": 0.3, "step": 0.01, "gravity": [0, -1, 0],
+                          "integrator": {"method": "generalized-alpha", "rho_infinity": 0.5}})");
+  const json scene = report({"simulate", "bar.supple", "--scene", "scene.json"});
+  EXPECT_EQ(scene["integrator"], "generalized-alpha");
+  EXPECT_EQ(scene["integrator_options"]["rho_infinity"], "0.5");
+  EXPECT_EQ(report({"simulate", "bar.supple", "--scene", "scene.json", "--full"})["integrator"], "generalized-alpha");
+  EXPECT_EQ(report({"simulate", "bar.supple", "--scene", "scene.json", "--integrator", "newmark"})["integrator"],
+            "newmark");
+}
+
+TEST_F(SimulateCommandTest, NamesIntegratorsAndForcesItDoesNotKnow) {
+  reduce_bar();
+  expect_refusal({"simulate", "bar.supple", "--integrator", "leapfrog"}, {"--integrator", "leapfrog", "newmark"});
+  expect_refusal({"simulate", "bar.supple", "--integrator", "newmark:rho=1"}, {"--integrator", "'rho'"});
+  expect_refusal({"simulate", "bar.supple", "--integrator", "generalized-alpha:rho_infinity=7"}, {"0 to 1"});
+  const auto refused = [&](const char* scene, const std::vector<std::string>& parts) {
+    write("scene.json", scene);
+    expect_refusal({"simulate", "bar.supple", "--scene", "scene.json"}, parts);
+  };
+  refused(R"({"integrator": {"method": "leapfrog"}})", {"/integrator", "leapfrog", "newmark, generalized-alpha"});
+  refused(R"({"integrator": {"method": "newmark", "rho_infinity": 0.5}})", {"rho_infinity"});
+  refused(R"({"solver": {"beta": 0.3}})", {"/solver", "beta", "integrator"});
+  refused(R"({"outside": [{"force": "ceiling"}]})", {"/outside/0", "ceiling", "floor"});
+  refused(R"({"outside": [{"force": "floor", "axis": "w"}]})", {"/outside/0", "'w'", "x, y, z"});
+  refused(R"({"outside": [{"force": "floor", "depth": 1}]})", {"depth"});
+}
+
+TEST_F(SimulateCommandTest, AFloorStopsWhatFalls) {
+  reduce_ball();
+  const auto lowest = [&](const char* scene, const char* folder) {
+    write("scene.json", scene);
+    EXPECT_EQ(report({"simulate", "ball.supple", "--scene", "scene.json", "--track", "0", "-o", folder})["status"],
+              "complete");
+    double least = 0;
+    for (const double y : table(std::string(folder) + "/tracked.csv").numbers("uy0")) least = std::min(least, y);
+    return least;
+  };
+  const double free = lowest(R"({"duration": 0.6, "step": 0.005, "gravity": [0, -9.81, 0]})", "free");
+  EXPECT_NEAR(free, -0.5 * 9.81 * 0.36, 0.02);
+  const double stopped = lowest(R"({"duration": 0.6, "step": 0.005, "gravity": [0, -9.81, 0],
+      "outside": [{"force": "floor", "axis": "y", "height": -1.2, "stiffness": 2e6}]})",
+                                "stopped");
+  EXPECT_GT(stopped, 0.8 * free);
+}
+
 TEST_F(SimulateCommandTest, KeepsRowsOfDenseBasesInSinglePrecisionUnlessTold) {
   reduce_bar();
   EXPECT_EQ(report({"simulate", "bar.supple", "-o", "run"})["precision"], "double");

@@ -1,4 +1,5 @@
-supple_test(subspace LABEL unit LINKS supple::reduction SOURCES reduction/subspace/subspace_test.cpp)
+supple_test(subspace LABEL unit LINKS supple::reduction 
+  SOURCES reduction/subspace/subspace_test.cpp reduction/subspace/own_structure_test.cpp)
 supple_test(bases LABEL unit LINKS supple::reduction SOURCES reduction/basis/bases_test.cpp)
 supple_test(modal_derivatives LABEL unit LINKS supple::reduction SOURCES reduction/basis/modal_derivatives_test.cpp)
 supple_test(reduced_system LABEL unit LINKS supple::reduction SOURCES reduction/system/reduced_system_test.cpp)
