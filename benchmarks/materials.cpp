@@ -6,8 +6,8 @@
 #include <io/builtin/builtin_meshes.hpp>
 #include <io/mesh/node_sets.hpp>
 #include <physics/body/solid_model.hpp>
+#include <reduction/model/with_reduced_system.hpp>
 #include <reduction/pipeline/reduce.hpp>
-#include <reduction/pipeline/with_reduced_system.hpp>
 
 #include <algorithm>
 #include <cstdio>

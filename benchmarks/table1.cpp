@@ -8,8 +8,8 @@
 #include <io/builtin/builtin_meshes.hpp>
 #include <io/mesh/mesh_reader.hpp>
 #include <io/mesh/node_sets.hpp>
+#include <reduction/model/with_reduced_system.hpp>
 #include <reduction/pipeline/reduce.hpp>
-#include <reduction/pipeline/with_reduced_system.hpp>
 #include <reduction/training/pull_test.hpp>
 
 #include <CLI/CLI.hpp>

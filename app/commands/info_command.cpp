@@ -8,7 +8,7 @@
 #include <io/builtin/builtin_meshes.hpp>
 #include <io/builtin/builtin_surfaces.hpp>
 #include <physics/mesh/tet_mesh.hpp>
-#include <reduction/pipeline/reduced_model.hpp>
+#include <reduction/model/reduced_model.hpp>
 
 #include <CLI/CLI.hpp>
 

@@ -18,7 +18,7 @@
 #include <io/table/csv.hpp>
 #include <physics/load/outside_force_library.hpp>
 #include <physics/time/integrator_library.hpp>
-#include <reduction/pipeline/reduced_model.hpp>
+#include <reduction/model/reduced_model.hpp>
 
 #include <CLI/CLI.hpp>
 

@@ -6,7 +6,7 @@
 #include <numerics/optimize/warm_solver.hpp>
 #include <physics/load/loads.hpp>
 #include <physics/system/damping.hpp>
-#include <reduction/pipeline/reduced_model.hpp>
+#include <reduction/model/reduced_model.hpp>
 
 #include <filesystem>
 #include <limits>

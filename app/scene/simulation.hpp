@@ -4,7 +4,7 @@
 #include <app/scene/scene.hpp>
 #include <core/progress.hpp>
 #include <physics/time/implicit_step.hpp>
-#include <reduction/pipeline/reduced_model.hpp>
+#include <reduction/model/reduced_model.hpp>
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #pragma once
 /// \file Frames of a simulation in a file, to look at and to compare; see docs/model-file.md.
 
-#include <reduction/pipeline/reduced_model.hpp>
+#include <reduction/model/reduced_model.hpp>
 
 #include <filesystem>
 #include <string>

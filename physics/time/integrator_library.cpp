@@ -7,10 +7,11 @@ namespace supple {
 Registry<NamedIntegrator>& integrators() {
   static Registry<NamedIntegrator> all(
       "integrator",
-      {named_integrator<Newmark>("newmark", "Newmark's family; as it stands, average acceleration",
-                                 OptionsOf<NewmarkParameters>()
-                                     .add("beta", &NewmarkParameters::beta, "0.25: average acceleration")
-                                     .add("gamma", &NewmarkParameters::gamma, "above 0.5: damps, at first order")),
+      {named_integrator<Newmark>(
+           "newmark", "Newmark's family; as it stands, average acceleration",
+           OptionsOf<NewmarkParameters>()
+               .add("beta", &NewmarkParameters::beta, "share of the acceleration at the end of a step in displacements")
+               .add("gamma", &NewmarkParameters::gamma, "the same in velocities; above 0.5 damps, at first order")),
        named_integrator<GeneralizedAlpha>(
            "generalized-alpha", "second order, and what is too fast for the step dies out",
            OptionsOf<GeneralizedAlphaParameters>().add("rho_infinity", &GeneralizedAlphaParameters::rho_infinity,

@@ -4,15 +4,11 @@
 #include <physics/body/force_models.hpp>
 #include <physics/system/full_system.hpp>
 #include <reduction/basis/subspace_library.hpp>
-#include <reduction/pipeline/reduce.hpp>
 #include <reduction/pipeline/training.hpp>
 
 #include <memory>
 
 namespace supple {
-
-/// What training needs to know of a body.
-ObjectTraits traits_of(const Body& body, const ReduceOptions& options);
 
 /// Calls visit(system, subspace) with the full system of the body and the subspace that the options name.
 template <typename Visitor>

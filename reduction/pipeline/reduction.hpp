@@ -2,7 +2,7 @@
 /// \file Main job for force models, subspaces and selectors of one's own types.
 
 #include <core/peak_memory.hpp>
-#include <reduction/pipeline/reduced_forces.hpp>
+#include <reduction/model/reduced_forces.hpp>
 #include <reduction/pipeline/training.hpp>
 #include <sparse/selection/explain_subset_selector.hpp>
 #include <sparse/selection/smallest_selection.hpp>

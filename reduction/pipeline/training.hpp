@@ -4,6 +4,7 @@
 #include <physics/mesh/cell_mesh.hpp>
 #include <physics/system/any_system.hpp>
 #include <physics/system/full_system.hpp>
+#include <reduction/pipeline/object_traits.hpp>
 #include <reduction/pipeline/reduce_options.hpp>
 #include <reduction/pipeline/stage_clock.hpp>
 #include <reduction/system/reduced_system.hpp>
@@ -41,15 +42,6 @@ struct RunSeeds {
         held_out(poses + 7919),
         equilibria(poses + 15485863),
         selection(options.seed) {}
-};
-
-/// What training needs to know of an object beside its system.
-struct ObjectTraits {
-  double diagonal;  ///< the length that amplitudes are shares of [m]
-  InvertedPoses inverted;
-  Index equilibria = 0;
-  bool thin = false;  ///< buckles under large loads: equilibria have a third of them
-  std::string component_name = "components";
 };
 
 /// An object in a subspace, and what that does at rest.

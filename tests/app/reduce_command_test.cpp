@@ -1,7 +1,7 @@
 #include <core/random.hpp>
 #include <core/tensor_file.hpp>
 #include <io/picture/image.hpp>
-#include <reduction/pipeline/reduced_model.hpp>
+#include <reduction/model/reduced_model.hpp>
 #include <tests/app/supple_process.hpp>
 
 #include <gmock/gmock.h>

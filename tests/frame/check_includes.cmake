@@ -20,7 +20,7 @@ set(floors core numerics sparse physics io reduction testing app examples benchm
 set(folders_of_numerics linear eigen optimize)
 set(folders_of_sparse problem nnls selection selectors)
 set(folders_of_physics mesh material model heat load system time statics body)
-set(folders_of_reduction subspace basis system training pipeline editing plugin)
+set(folders_of_reduction subspace basis system training model pipeline editing plugin)
 set(folders_of_io text table mesh surface builtin frames picture)
 set(folders_of_app report scene commands)
 

@@ -3,8 +3,8 @@
 #include <core/parallel.hpp>
 #include <core/tensor_file.hpp>
 #include <physics/body/material_law.hpp>
+#include <reduction/model/with_reduced_system.hpp>
 #include <reduction/pipeline/reduce.hpp>
-#include <reduction/pipeline/with_reduced_system.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
 #include <tests/support/bars.hpp>

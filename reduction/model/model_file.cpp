@@ -1,7 +1,7 @@
 #include <core/random.hpp>
 #include <core/tensor_file.hpp>
 #include <physics/body/force_models.hpp>
-#include <reduction/pipeline/reduced_model.hpp>
+#include <reduction/model/reduced_model.hpp>
 
 #include <algorithm>
 #include <array>

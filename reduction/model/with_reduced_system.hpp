@@ -2,7 +2,7 @@
 /// \file Reduced system of a model, of its own type.
 
 #include <physics/body/force_models.hpp>
-#include <reduction/pipeline/reduced_model.hpp>
+#include <reduction/model/reduced_model.hpp>
 #include <reduction/system/reduced_system.hpp>
 
 namespace supple {

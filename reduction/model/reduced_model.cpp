@@ -1,12 +1,7 @@
-#include <reduction/pipeline/with_reduced_system.hpp>
+#include <reduction/model/reduced_model.hpp>
 #include <reduction/system/reduced_modes.hpp>
 
 namespace supple {
-
-AnySystem<Matrix> ReducedModel::system(RowPrecision precision) const {
-  return visit_reduced_system(
-      *this, [](const auto& system) { return AnySystem<Matrix>(system); }, precision);
-}
 
 ReducedModes reduced_modes(const ReducedModel& model) {
   return std::visit(

@@ -3,7 +3,7 @@
 
 #include <physics/body/body.hpp>
 #include <physics/system/any_system.hpp>
-#include <reduction/pipeline/reduced_forces.hpp>
+#include <reduction/model/reduced_forces.hpp>
 #include <reduction/subspace/subspace.hpp>
 #include <reduction/system/reduced_modes.hpp>
 #include <reduction/system/row_precision.hpp>
