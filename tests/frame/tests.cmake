@@ -7,6 +7,13 @@ add_test(NAME frame.tutorials_show_code_that_runs
           -P ${CMAKE_CURRENT_LIST_DIR}/check_docs.cmake)
 set_tests_properties(frame.tutorials_show_code_that_runs PROPERTIES LABELS unit)
 
+find_program(CLANG_FORMAT clang-format-14)
+mark_as_advanced(CLANG_FORMAT)
+add_test(NAME frame.code_is_formatted
+  COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DCLANG_FORMAT=${CLANG_FORMAT}
+          -P ${CMAKE_CURRENT_LIST_DIR}/check_format.cmake)
+set_tests_properties(frame.code_is_formatted PROPERTIES LABELS unit SKIP_REGULAR_EXPRESSION "skipped: ")
+
 # What is wrong with a model of a user's own, the compiler says in words and first.
 add_test(NAME frame.concepts_fail_in_words
   COMMAND ${CMAKE_COMMAND} -DCOMPILER=${CMAKE_CXX_COMPILER} -DINCLUDE=${PROJECT_SOURCE_DIR}
