@@ -43,6 +43,17 @@ function(supple_build_options target)
     target_compile_options(${target} PRIVATE -march=${SUPPLE_MARCH})
   endif()
   target_compile_options(${target} PRIVATE -fno-math-errno)
+  if(PROJECT_IS_TOP_LEVEL)
+    supple_warnings(${target})
+  endif()
+endfunction()
+
+# -Wrestrict and -Wmaybe-uninitialized of GCC 12 are wrong about the C++ library's strings and Eigen's products wherever
+# these are inlined (https://gcc.gnu.org/bugzilla/show_bug.cgi?id=105329, 105562), which no pragma of ours can reach; for
+# them the sanitizers stand in.
+function(supple_warnings target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi -Wno-maybe-uninitialized -Wno-restrict>)
 endfunction()
 
 # One export file a floor, so that a consumer finds what its floor needs and nothing else.

@@ -1,6 +1,8 @@
 #pragma once
 /// \file What Eigen must know of a scalar type that stands for a double.
 
+#include <core/intrinsics.hpp>
+
 #include <Eigen/Core>
 
 namespace supple {

@@ -2,16 +2,13 @@
 /// \file A pack of eight numbers that behaves like one: the second scalar type of every element formula.
 
 #include <core/eigen_scalar.hpp>
+#include <core/intrinsics.hpp>
 #include <core/types.hpp>
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <numbers>
-
-#ifdef __AVX512F__
-#include <immintrin.h>
-#endif
 
 namespace supple {
 

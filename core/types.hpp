@@ -1,6 +1,8 @@
 #pragma once
 /// \file Index, vector and matrix types shared by every floor of the library.
 
+#include <core/intrinsics.hpp>
+
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 

@@ -13,7 +13,7 @@ namespace {
 /// from the lowest to the highest corner of a cell. Node (i, j, k) lies at (i, j, k) / divisor.
 template <typename Keep>
 TetMesh kuhn_mesh(const std::array<Index, 3>& cells, Index divisor, const Keep& is_kept) {
-  const auto [nx, ny, nz] = cells;
+  const Index nx = cells[0], ny = cells[1], nz = cells[2];
   const auto lattice_node = [&](const std::array<Index, 3>& at) {
     return (at[0] * (ny + 1) + at[1]) * (nz + 1) + at[2];
   };

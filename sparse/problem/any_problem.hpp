@@ -11,8 +11,8 @@ namespace supple {
 /// Evaluated columns of an AnyProblem; a ColumnBlock.
 class AnyColumns {
  public:
-  template <ColumnBlock C>
-  requires(!std::same_as<C, AnyColumns>) AnyColumns(C columns)
+  template <typename C>
+  requires(!std::same_as<C, AnyColumns> && ColumnBlock<C>) AnyColumns(C columns)
       : self_(std::make_unique<Model<C>>(std::move(columns))) {}
 
   Index size() const { return self_->size(); }

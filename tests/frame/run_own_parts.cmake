@@ -1,5 +1,5 @@
-# Installs the build, builds parts of a user's own against it, runs and tests them, and loads one into the installed command.
-# Arguments: BUILD, SOURCE, PARTS, WORK, GENERATOR.
+# Builds parts of a user's own against the installed package, runs and tests them, and loads one into the installed
+# command. Arguments: PREFIX, SOURCE, PARTS, WORK, GENERATOR, COMPILER.
 file(REMOVE_RECURSE ${WORK})
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE code WORKING_DIRECTORY ${WORK})
@@ -8,16 +8,15 @@ function(run)
   endif()
 endfunction()
 file(MAKE_DIRECTORY ${WORK})
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix
-    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS=-O1 -DPARTS=${PARTS})
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${PREFIX}
+    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 -DPARTS=${PARTS})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/own_parts)
 run(${WORK}/build/own_tests)
-if(EXISTS ${WORK}/prefix/bin/supple)
-  run(${WORK}/prefix/bin/supple reduce bar:8x2x2 --fix x<=0 --plugin ${WORK}/build/libgent_plugin.so --material gent
+if(EXISTS ${PREFIX}/bin/supple)
+  run(${PREFIX}/bin/supple reduce bar:8x2x2 --fix x<=0 --plugin ${WORK}/build/libgent_plugin.so --material gent
       --parameter limit=5 --modes 4 --poses 20 --points 30 --held-out 10 -o bar.supple)
-  run(${WORK}/prefix/bin/supple simulate bar.supple --plugin ${WORK}/build/libgent_plugin.so --time 0.05)
+  run(${PREFIX}/bin/supple simulate bar.supple --plugin ${WORK}/build/libgent_plugin.so --time 0.05)
 endif()
 # a plug-in with one of each kind, in the installed command
 if(EXISTS ${WORK}/prefix/bin/supple)
