@@ -1,5 +1,5 @@
 #pragma once
-/// \file Checks at the door: a caller's mistake throws and names itself.
+/// \file Checks of arguments, and the exceptions of the library: a caller's mistake throws and names itself.
 
 #include <core/types.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What Eigen must know of a scalar type that stands for a double.
+/// \file Traits that Eigen needs of a scalar type that stands for a double.
 
 #include <core/intrinsics.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Whole files: one that appears completely or not at all, and one read at once.
+/// \file Output file that appears completely or not at all, and reading a whole file at once.
 
 #include <cstddef>
 #include <filesystem>

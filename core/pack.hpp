@@ -1,5 +1,5 @@
 #pragma once
-/// \file A pack of eight numbers that behaves like one: the second scalar type of every element formula.
+/// \file Pack of eight numbers that behaves like one number: the second scalar type of every element formula.
 
 #include <core/eigen_scalar.hpp>
 #include <core/intrinsics.hpp>

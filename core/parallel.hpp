@@ -1,6 +1,6 @@
 #pragma once
-/// \file Loops over independent pieces of work. Results never depend on the number of threads: the pieces are
-/// fixed by the caller, and only who computes a piece varies.
+/// \file Parallel loops over independent pieces of work. Results never depend on the number of threads: the pieces are
+/// fixed by the caller, and only which thread computes a piece varies.
 
 #include <core/types.hpp>
 

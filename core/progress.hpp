@@ -1,5 +1,5 @@
 #pragma once
-/// \file How long work tells its caller where it stands. The library prints nothing; the caller decides.
+/// \file Progress of long work, told by a callback: the library prints nothing; the caller decides.
 
 #include <functional>
 #include <string_view>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Formulas recorded once, differentiated exactly, and run as straight-line programs over numbers or packs.
+/// \file Recorded formulas, differentiated exactly and run as straight-line programs over numbers or packs.
 
 #include <core/eigen_scalar.hpp>
 #include <core/pack.hpp>

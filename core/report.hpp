@@ -1,5 +1,5 @@
 #pragma once
-/// \file How an iterative method says what it did. Not converging is an answer, not an exception.
+/// \file Report of an iterative method: status, iterations, residual. Not converging is an answer, not an exception.
 
 #include <core/types.hpp>
 

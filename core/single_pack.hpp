@@ -1,5 +1,5 @@
 #pragma once
-/// \file Eight numbers kept in single precision, computed with in double.
+/// \file Pack of eight numbers kept in single precision, computed with in double.
 
 #include <core/pack.hpp>
 

@@ -1,4 +1,5 @@
 #pragma once
+/// \file Stopwatch, and the processor time of the whole process.
 
 #include <chrono>
 #include <ctime>

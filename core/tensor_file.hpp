@@ -1,5 +1,5 @@
 #pragma once
-/// \file Named arrays in one file, in the published safetensors layout: any safetensors reader opens it.
+/// \file File of named arrays, in the published safetensors layout: any safetensors reader opens it.
 ///
 /// 8 bytes length of the header (little-endian) · JSON header, padded by spaces · arrays, little-endian,
 /// row-major, without holes. On top of that layout a file of ours promises: every array starts at a multiple

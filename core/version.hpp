@@ -1,4 +1,4 @@
 #pragma once
-/// \file The version of the library; CMake reads it from here, too.
+/// \file Version of the library; CMake reads it from here, too.
 
 #define SUPPLE_VERSION "0.1.0"

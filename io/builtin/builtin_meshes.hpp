@@ -1,5 +1,5 @@
 #pragma once
-/// \file Meshes by name, for demonstrations, tests and benchmarks: no file needed.
+/// \file Built-in meshes of solids, by name, for demonstrations, tests and benchmarks: no file needed.
 
 #include <io/mesh/mesh_reader.hpp>
 

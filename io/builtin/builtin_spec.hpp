@@ -1,5 +1,5 @@
 #pragma once
-/// \file The texts that describe built-in meshes: "bar:80x20x10".
+/// \file Parser of the texts that name built-in meshes with their sizes, such as "bar:80x20x10".
 
 #include <core/check.hpp>
 

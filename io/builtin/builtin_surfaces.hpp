@@ -1,5 +1,5 @@
 #pragma once
-/// \file Triangle meshes by name, for demonstrations, tests and benchmarks: no file needed.
+/// \file Built-in triangle meshes, by name, for demonstrations, tests and benchmarks: no file needed.
 
 #include <physics/mesh/triangle_mesh.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Fills a smooth solid, given by a function, with tetrahedra of good shape.
+/// \file Mesher that fills a smooth solid, given by a function, with tetrahedra of good shape.
 
 #include <physics/mesh/tet_mesh.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file A creature to play with: soft limbs about a foot to hold it by.
+/// \file Octopus to play with, as an implicit solid: soft limbs about a foot to hold it by.
 
 #include <physics/mesh/tet_mesh.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Meshes with fields for ParaView and every other reader of VTK's XML files.
+/// \file Writer of meshes with fields, single or in time, for ParaView and every other reader of VTK's XML files.
 
 #include <physics/mesh/tet_mesh.hpp>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// \file The formats behind read_solid_mesh: each turns a text into a FileMesh.
+/// \file Readers of the mesh formats behind read_solid_mesh, one a format: each turns a text into a FileMesh.
 
 #include <io/text/cursor.hpp>
 #include <physics/mesh/cell_mesh.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file What the mesh readers report besides the mesh.
+/// \file Notes that the mesh readers hand out beside the mesh: format, warnings, numbers in the file.
 
 #include <physics/mesh/mesh_numbers.hpp>
 

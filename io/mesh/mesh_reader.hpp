@@ -1,5 +1,5 @@
 #pragma once
-/// \file Meshes of solids from files.
+/// \file Reader of meshes of solids, of tets or hexahedra, from files of Gmsh, Medit, TetGen, VegaFEM or VTK.
 
 #include <io/mesh/mesh_notes.hpp>
 #include <physics/mesh/cell_mesh.hpp>

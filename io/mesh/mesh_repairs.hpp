@@ -1,6 +1,5 @@
 #pragma once
-/// \file What all mesh readers do with the content of a file: tell its kind, keep the nodes in use, find
-/// nodes in one place.
+/// \file Steps that all mesh readers share: telling a file's kind, dropping unused nodes, counting nodes in one place.
 
 #include <core/types.hpp>
 

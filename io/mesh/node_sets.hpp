@@ -1,5 +1,5 @@
 #pragma once
-/// \file Sets of nodes in words: which ones to hold, to pull, to watch.
+/// \file Node sets described by a rule such as "y<4%", a box, a region or a file: which to hold, to pull, to watch.
 
 #include <physics/mesh/cell_mesh.hpp>
 

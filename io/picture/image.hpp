@@ -1,5 +1,5 @@
 #pragma once
-/// \file Pixels, text on them, and PNG files.
+/// \file Images: pixels, text on them, and PNG files.
 
 #include <io/picture/colour.hpp>
 

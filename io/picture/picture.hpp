@@ -1,6 +1,5 @@
 #pragma once
-/// \file Pictures of deformed objects: a small studio with soft light, a camera that finds its place, and
-/// captions.
+/// \file Pictures of deformed objects: a small studio with soft light, a camera that finds its place, and captions.
 
 #include <io/picture/colour.hpp>
 #include <io/picture/image.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file A small alphabet of strokes, for captions in pictures: no font files needed, sharp at every size.
+/// \file Stroke font for captions in pictures: a small alphabet of lines, no font files needed, sharp at every size.
 
 #include <Eigen/Core>
 

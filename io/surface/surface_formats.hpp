@@ -1,5 +1,5 @@
 #pragma once
-/// \file The formats behind read_triangle_mesh: each turns a text into a FileSurface.
+/// \file Readers of the formats behind read_triangle_mesh, one a format: each turns a text into a FileSurface.
 
 #include <io/text/cursor.hpp>
 #include <physics/mesh/triangle_mesh.hpp>

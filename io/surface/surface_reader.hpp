@@ -1,5 +1,5 @@
 #pragma once
-/// \file Triangle meshes from files.
+/// \file Reader of triangle meshes from OBJ, OFF, PLY and STL files.
 
 #include <io/mesh/mesh_notes.hpp>
 #include <physics/mesh/triangle_mesh.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Small tables as comma-separated text (RFC 4180): a header with units, then one line a row.
+/// \file Tables as comma-separated text (RFC 4180), read and written: a header with units, then one line a row.
 
 #include <core/types.hpp>
 

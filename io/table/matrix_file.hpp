@@ -1,5 +1,5 @@
 #pragma once
-/// \file Matrices and vectors that other programs wrote: NumPy's .npy and Matrix Market's .mtx.
+/// \file Reader of matrices and vectors from other programs: NumPy's .npy and Matrix Market's .mtx.
 
 #include <core/types.hpp>
 

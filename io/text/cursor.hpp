@@ -1,6 +1,5 @@
 #pragma once
-/// \file Walks through a file held in memory, as text or as binary numbers; every error names the file and
-/// the place.
+/// \file Cursor through a file held in memory, as text or as binary numbers; every error names the file and the place.
 
 #include <core/check.hpp>
 

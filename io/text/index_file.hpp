@@ -1,5 +1,5 @@
 #pragma once
-/// \file Sets of indices from text files.
+/// \file Reader of sets of indices from text files.
 
 #include <core/types.hpp>
 

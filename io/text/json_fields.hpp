@@ -1,5 +1,5 @@
 #pragma once
-/// \file Options and scenes as JSON, read field by field with every check and a message that names the place.
+/// \file JSON objects, read field by field with every check and a message that names the place.
 
 #include <core/types.hpp>
 
