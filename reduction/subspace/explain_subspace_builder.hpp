@@ -5,8 +5,8 @@
 
 namespace supple {
 
-/// True; or compilation ends at the first requirement of SubspaceBuilder<B> that is not met, with a sentence that names it:
-/// `static_assert(explain_subspace_builder<MyBasis>());`.
+/// True; or compilation ends at the first requirement of SubspaceBuilder that B does not meet, with a sentence that
+/// names it: `static_assert(explain_subspace_builder<MyBasis>());`.
 template <typename B>
 consteval bool explain_subspace_builder() {
   static_assert(
