@@ -245,7 +245,7 @@ class Registry {
   std::deque<Entry> entries_;  // stay where they are
 };
 
-/// "  nn-sp: non-negative subspace pursuit\n    patience=10: stop after …\n" of each entry, for helps.
+/// "  nn-sp: non-negative subspace pursuit\n      patience=10: draws …\n" of each entry, for helps.
 template <typename Entry>
 std::string described(const Registry<Entry>& registry) {
   std::string text;

@@ -24,7 +24,7 @@ int main() {
   std::iota(where.nodes.begin(), where.nodes.end(), Index{0});
 
   Loads loads;
-  loads.others.push_back(Wind(where, {.x = 0, .y = 5, .z = 0}));
+  loads.others.push_back(Wind(where, {.y = -5}));
   const Index edge = select_nodes(mesh.nodes, "x>99%").front();
   const auto bent = [&](const auto& system) {
     Newmark newmark(system, 0.02, {.damping = {.alpha = 3}});

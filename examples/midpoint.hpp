@@ -38,4 +38,4 @@ class Midpoint : public supple::ImplicitIntegrator<System> {
     return report;
   }
 };
-static_assert(supple::TimeIntegrator<Midpoint>);
+static_assert(supple::TimeIntegratorFor<Midpoint<supple::archetype::Dynamics>, supple::archetype::Dynamics>);

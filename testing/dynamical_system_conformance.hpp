@@ -4,9 +4,9 @@
 ///
 ///     struct MySystem {
 ///       static System make();                                    // small; called once a test
-///       static Vector deformed(const System&, std::uint64_t seed);  // a random state, energy defined
-///       at 1.01 × static Vector displacements(const System&, VectorIn u);  // unknowns → 3 n at all nodes,
-///       linear static Vector nodal_mass(const System&);                 // n [kg]
+///       static Vector deformed(const System&, std::uint64_t seed);  // random; energy defined at 1.01 × it
+///       static Vector displacements(const System&, VectorIn u);     // unknowns → 3 n at all nodes, linear
+///       static Vector nodal_mass(const System&);                    // n [kg]
 ///     };
 ///     INSTANTIATE_TYPED_TEST_SUITE_P(MySystem, DynamicalSystemConformance, MySystem);
 

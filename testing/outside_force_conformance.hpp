@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 namespace supple::test {
@@ -45,7 +46,7 @@ class OutsideForceConformance : public testing::Test {
     const auto plus = g(u);
     u(j / 3, j % 3) = at - h;
     const auto minus = g(u);
-    return ((plus - minus) / (2 * h));
+    return std::decay_t<decltype(plus)>((plus - minus) / (2 * h));
   }
 };
 TYPED_TEST_SUITE_P(OutsideForceConformance);

@@ -87,7 +87,8 @@ void declare_plugins(CLI::App& command) {
   command
       .add_option_function<std::vector<std::string>>(
           "--plugin", [](const std::vector<std::string>& files) { std::ranges::for_each(files, load_plugin); },
-          "Shared library with materials of your own, see docs/materials.md; may be repeated")
+          "Shared library with materials, elements, selectors, subspaces, integrators or outside forces of your own; "
+          "may be repeated")
       ->type_name("FILE.so")
       ->expected(1)
       ->take_all();

@@ -65,6 +65,7 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
   if (options.every < 1) throw InputError("--every is " + std::to_string(options.every) + ", expected at least 1");
   if (command.integrator) scene.integrator = Choice::parse(*command.integrator);
   if (scene.integrator) options.integrator = *scene.integrator;
+  check_integrator(options.integrator);
   options.steps.damping = scene.damping.value_or(damping(model.body));
   options.steps.solver = scene.solver.value_or(command.full ? NonlinearSolver(Newton{}) : NonlinearSolver(Bfgs{}));
   if (command.full && !std::holds_alternative<Newton>(options.steps.solver)) {

@@ -104,10 +104,11 @@ TimedSprings read_springs(const JsonFields& fields, const Body& body) {
     throw InputError(fields.source() + ": " + fields.place() + " has several of 'target', 'displacement' and 'path'");
   result.times = Vector::Zero(1);
   result.displacements = Points::Zero(1, 3);
-  if (displacement) result.displacements = fields.point("displacement").transpose();
+  if (displacement) result.displacements.row(0) = fields.point("displacement").transpose();
   if (target) {
     if (result.springs.size() > 1) fields.fail("target", "is one point for several nodes; give a 'displacement'");
-    result.displacements = fields.point("target").transpose() - node_positions(body).row(result.springs.front().first);
+    result.displacements.row(0) =
+        fields.point("target").transpose() - node_positions(body).row(result.springs.front().first);
   }
   if (path) {
     const std::vector<JsonFields> keys = fields.objects("path");

@@ -131,6 +131,7 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
     const Vector u_before = state.u;
     Stopwatch watch;
     const StepReport report = integrator.step(during(k), state);
+    state.time = static_cast<double>(k) * options.step;  // rounding does not add up
     result.integration_seconds += watch.seconds();
     const bool finite = report.status != Status::NotFinite && state.u.allFinite() && state.v.allFinite();
     if (!finite) {

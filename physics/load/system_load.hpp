@@ -75,7 +75,7 @@ struct SystemLoad {
   }
 };
 
-/// What acts as time passes: a load that stays, or a function of time [s] that gives one.
+/// What acts as time passes: a load that stays, or a function of time [s]; what it gives lasts until it is called again.
 template <typename L, typename MatrixType>
 concept LoadOverTime = std::convertible_to < const L&,
         const SystemLoad<MatrixType>

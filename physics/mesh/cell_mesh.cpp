@@ -74,7 +74,7 @@ class CellFaces {
   Cycle cycle(Index face) const {
     Cycle result{corners(face), false};
     Corners& c = result.corners;
-    std::ranges::rotate(c, std::ranges::min_element(c));
+    std::rotate(c.begin(), std::ranges::min_element(c), c.end());
     result.turned = c[1] > c.back();
     if (result.turned) std::reverse(c.begin() + 1, c.end());
     return result;

@@ -13,6 +13,7 @@ class FullTerm final : public OutsideTerm<SparseMatrix> {
   void add_force(VectorIn u, VectorOut f) const override {
     Points at_nodes = Points::Zero(num_nodes(), 3);
     force_.force(displacements(u), at_nodes);
+    require_size("the outside force", at_nodes.rows(), num_nodes());
     for (Index a = 0; a < num_nodes(); ++a)
       if (free_[a] >= 0) f.segment<3>(3 * free_[a]) += at_nodes.row(a).transpose();
   }

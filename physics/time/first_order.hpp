@@ -168,7 +168,7 @@ class FirstOrderIntegrator {
 template <SemidiscreteSystem System>
 SolveReport solve_steady(const System& system, const SystemLoad<typename System::MatrixType>& load, Vector& u,
                          const SolveLimits& limits = {}) {
-  require_size("load.force", load.force.size(), system.dim());
+  load.check(system.dim());
   require_size("u", u.size(), system.dim());
   detail::BalanceOfRates<System> balance(system, limits.tolerance);
   balance.load = &load;

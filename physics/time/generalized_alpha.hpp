@@ -75,6 +75,6 @@ class GeneralizedAlpha : public ImplicitIntegrator<System> {
   Coefficients with_;
 };
 
-static_assert(TimeIntegrator<GeneralizedAlpha>);
+static_assert(TimeIntegratorFor<GeneralizedAlpha<archetype::Dynamics>, archetype::Dynamics>);
 
 }  // namespace supple

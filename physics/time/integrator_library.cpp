@@ -4,6 +4,33 @@
 
 namespace supple {
 
+namespace {
+
+/// One node that nothing holds and no force moves: enough to make an integrator.
+struct NodeAtRest {
+  using MatrixType = Matrix;
+  Vector ones = Vector::Ones(3);
+  Matrix K = Matrix::Zero(3, 3);
+
+  Index dim() const { return 3; }
+  const Vector& mass() const { return ones; }
+  double energy(VectorIn) const { return 0; }
+  void force(VectorIn, VectorOut f) const { f.setZero(); }
+  void stiffness(VectorIn, Matrix& tangent) const { tangent = K; }
+  const Matrix& rest_stiffness() const { return K; }
+  SystemLoad<Matrix> project(const Loads&) const { return {Vector::Zero(3), {}}; }
+  Index num_nodes() const { return 1; }
+  Vector expand(VectorIn u) const { return u; }
+  Point displacement(VectorIn u, Index) const { return u; }
+};
+
+}  // namespace
+
+void check_integrator(const Choice& choice) {
+  const AnySystem<Matrix> system(std::make_shared<const NodeAtRest>());
+  (void)make_integrator(choice, system, 1, {});
+}
+
 Registry<NamedIntegrator>& integrators() {
   static Registry<NamedIntegrator> all(
       "integrator",
@@ -11,7 +38,8 @@ Registry<NamedIntegrator>& integrators() {
            "newmark", "Newmark's family; as it stands, average acceleration",
            OptionsOf<NewmarkParameters>()
                .add("beta", &NewmarkParameters::beta, "share of the acceleration at the end of a step in displacements")
-               .add("gamma", &NewmarkParameters::gamma, "the same in velocities; above 0.5 damps, at first order")),
+               .add("gamma", &NewmarkParameters::gamma,
+                    "the same in velocities; above 0.5, with beta = (gamma + 0.5)^2 / 4, it damps, at first order")),
        named_integrator<GeneralizedAlpha>(
            "generalized-alpha", "second order, and what is too fast for the step dies out",
            OptionsOf<GeneralizedAlphaParameters>().add("rho_infinity", &GeneralizedAlphaParameters::rho_infinity,

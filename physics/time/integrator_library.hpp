@@ -51,5 +51,12 @@ AnyIntegrator<AnySystem<Matrix>> make_integrator(const Choice& choice, const Any
                                                  const StepOptions& step);
 AnyIntegrator<AnySystem<SparseMatrix>> make_integrator(const Choice& choice, const AnySystem<SparseMatrix>& system,
                                                        double h, const StepOptions& step);
+AnyIntegrator<AnySystem<Matrix>> make_integrator(const Choice&, const AnySystem<Matrix>&&, double,
+                                                 const StepOptions&) = delete;  // it would dangle
+AnyIntegrator<AnySystem<SparseMatrix>> make_integrator(const Choice&, const AnySystem<SparseMatrix>&&, double,
+                                                       const StepOptions&) = delete;
+
+/// \throws std::invalid_argument for a choice that no system could be integrated by: unknown, or with options out of range.
+void check_integrator(const Choice& choice);
 
 }  // namespace supple

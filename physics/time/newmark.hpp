@@ -6,7 +6,7 @@
 namespace supple {
 
 struct NewmarkParameters {
-  double beta = 0.25, gamma = 0.5;  ///< average acceleration; γ > ½ adds numerical damping, at first order
+  double beta = 0.25, gamma = 0.5;  ///< average acceleration; γ > ½, β = ¼ (γ + ½)² damps, at first order
 };
 
 /// Advances M ü + D u̇ + f(u) = f_ext by the Newmark family (Newmark 1959; Hughes 2000, Sec. 9.1):
@@ -61,6 +61,6 @@ class Newmark : public ImplicitIntegrator<System> {
   double beta_, gamma_;
 };
 
-static_assert(TimeIntegrator<Newmark>);
+static_assert(TimeIntegratorFor<Newmark<archetype::Dynamics>, archetype::Dynamics>);
 
 }  // namespace supple

@@ -12,7 +12,7 @@ namespace supple {
 /// What becomes of the energy of an undamped linear oscillator.
 enum class EnergyBehaviour {
   Conserved,  ///< kinetic plus elastic energy stays, for any step
-  Falls,      ///< it never rises, and falls the faster the longer the step
+  Falls,      ///< it never rises from one step to the next, for any step
   Bounded,    ///< it swings or falls, and neither is promised
 };
 
@@ -50,10 +50,6 @@ struct Dynamics {
 };
 static_assert(DynamicalSystem<Dynamics>);
 }  // namespace archetype
-
-/// A class template over the system whose objects integrate any DynamicalSystem.
-template <template <DynamicalSystem> typename I>
-concept TimeIntegrator = TimeIntegratorFor<I<archetype::Dynamics>, archetype::Dynamics>;
 
 /// The load at a time [s], whether it changes or not.
 template <typename MatrixType, LoadOverTime<MatrixType> L>

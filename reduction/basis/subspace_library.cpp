@@ -6,6 +6,7 @@
 #include <reduction/basis/subspace_library.hpp>
 
 #include <algorithm>
+#include <cctype>
 
 namespace supple {
 
@@ -107,7 +108,10 @@ NamedSubspace pca() {
 std::vector<Choice> choices_of(const std::string& name) {
   std::vector<Choice> parts;
   for (std::size_t begin = 0; begin <= name.size();) {
-    const std::size_t end = std::min(name.find('+', begin), name.size());
+    std::size_t end = name.find('+', begin);  // between parts, not in a number such as 1e+5
+    while (end < name.size() && end + 1 < name.size() && std::isdigit(static_cast<unsigned char>(name[end + 1])))
+      end = name.find('+', end + 1);
+    end = std::min(end, name.size());
     Choice part = Choice::parse(name.substr(begin, end - begin));
     if (!subspaces().contains(part.name)) {
       std::string known;

@@ -109,7 +109,7 @@ Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std:
 /// Samples poses of the subspace, fits the forces by few components that `select` chooses, and measures the error. Any
 /// force model, subspace and selector will do; the model says where its nodes rest (rest_positions(), n × 3 [m]).
 /// Poses with inverted components are shrunk, and there are no equilibria, unless the options say otherwise. Of the
-/// options, those of the subspace and the name of the selector are not read.
+/// options, those of the subspace are not read, and the name of the selector is for messages only.
 /// \throws as reduce() of a Body.
 template <ForceModel Model, Subspace S, typename Selector = NnSp>
 Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std::shared_ptr<const S> subspace,

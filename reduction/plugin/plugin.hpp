@@ -7,7 +7,7 @@
 ///
 /// compiled against the installed package (CMake: `supple_plugin(my_material my_material.cpp)`) makes a library that
 /// `supple reduce … --plugin libmy_material.so --material my-material` loads. Types of the C++ library and of Eigen
-/// cross the edge, so library and program must agree in plugin_abi(): version of Supple, compiler, standard library
+/// cross the edge, so library and program must agree in SUPPLE_PLUGIN_ABI: version of Supple, compiler, standard library
 /// and alignment. Instruction sets may differ. A library is never unloaded.
 
 #include <core/version.hpp>
@@ -36,7 +36,7 @@ class PluginRegistry {
 };
 
 /// Loads a plug-in and adds what it has, all or nothing; again does nothing.
-/// \throws InputError naming the file: not a library, not a plug-in, or built for another plugin_abi().
+/// \throws InputError naming the file: not a library, not a plug-in, or built for another SUPPLE_PLUGIN_ABI.
 void load_plugin(const std::filesystem::path& path);
 
 }  // namespace supple

@@ -20,6 +20,7 @@ class ReducedTerm final : public OutsideTerm<Matrix> {
   void add_force(VectorIn q, VectorOut f) const override {
     Points at_nodes = Points::Zero(num_nodes(), 3);
     force_.force(displacements(q), at_nodes);
+    require_size("the outside force", at_nodes.rows(), num_nodes());
     f += rows_.project(at_nodes.reshaped<Eigen::RowMajor>());
   }
   void add_stiffness(VectorIn q, Matrix& K) const override {

@@ -19,8 +19,8 @@ if(EXISTS ${PREFIX}/bin/supple)
   run(${PREFIX}/bin/supple simulate bar.supple --plugin ${WORK}/build/libgent_plugin.so --time 0.05)
 endif()
 # a plug-in with one of each kind, in the installed command
-if(EXISTS ${WORK}/prefix/bin/supple)
-  set(supple ${WORK}/prefix/bin/supple)
+if(EXISTS ${PREFIX}/bin/supple)
+  set(supple ${PREFIX}/bin/supple)
   set(plugin --plugin ${WORK}/build/liball_six_plugin.so)
   run(${supple} reduce bar:8x2x2 --fix x<=0 ${plugin} --material gent --parameter limit=5 --subspace polynomials:degree=2
       --selector batched-omp:batch=5 --poses 20 --points 30 --held-out 10 -o six.supple --json six.json)

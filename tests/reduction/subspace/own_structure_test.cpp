@@ -63,8 +63,9 @@ struct Constants {
 };
 
 TEST(SubspaceLibrary, TakesABuilderOfOnesOwnWithItsOptions) {
-  subspaces().add(named_subspace("constants", "the same everywhere",
-                                 OptionsOf<Constants>().add("count", &Constants::count, "axes")));
+  if (!subspaces().contains("constants"))
+    subspaces().add(named_subspace("constants", "the same everywhere",
+                                   OptionsOf<Constants>().add("count", &Constants::count, "axes")));
   const StvkBar bar = clamped_bar();
   const auto build = [&](const char* name) {
     return std::visit([](const auto& basis) { return basis->dim(); }, build_subspace(bar.rest_state(), {.name = name}));
