@@ -108,7 +108,9 @@ TYPED_TEST_P(TimeIntegratorConformance, ABodyAtRestInEquilibriumStays) {
     ASSERT_EQ(report.status, Status::Converged);
   }
   EXPECT_TRUE(is_near(state.u, u, 1e-10));
-  if constexpr (TestFixture::has_velocity) EXPECT_TRUE(is_near(state.v, Vector::Zero(3), 1e-9));
+  if constexpr (TestFixture::has_velocity) {
+    EXPECT_TRUE(is_near(state.v, Vector::Zero(3), 1e-9));
+  }
 }
 
 // ½ vᵀMv + ½ uᵀKu of springs, from steps of a tenth of the fastest period up to three periods; ½ uᵀMu where there are
@@ -139,7 +141,9 @@ TYPED_TEST_P(TimeIntegratorConformance, TheEnergyOfALinearOscillatorBehavesAsItS
           ASSERT_LE(now, before + 1e-10 * start) << "step " << step << " of " << share << " periods";
           break;
         case EnergyBehaviour::Bounded:
-          if (share <= 0.1) ASSERT_LE(now, 1.1 * start) << "step " << step;
+          if (share <= 0.1) {
+            ASSERT_LE(now, 1.1 * start) << "step " << step;
+          }
           break;
       }
       before = now;

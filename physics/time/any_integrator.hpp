@@ -27,7 +27,7 @@ class AnyIntegrator {
   State at_rest() const { return integrator_->at_rest(); }
   /// The acceleration that u and v imply under this load.
   void balance(const SystemLoad<MatrixType>& load, State& state) const { integrator_->balance(load, state); }
-  template <LoadOverTime<MatrixType> Load>
+  template <LoadOverTime<MatrixType> Load = SystemLoad<MatrixType>>
   StepReport step(const Load& load, State& state) {
     SystemLoad<MatrixType> now;  // keeps what a function of time returns by value
     return integrator_->step(

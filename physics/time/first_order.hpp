@@ -113,7 +113,7 @@ class FirstOrderIntegrator {
 
   /// One time step under a load that is evaluated at its end. Not converging is reported and the best iterate kept; a
   /// state that is NotFinite stays as it was.
-  template <LoadOverTime<MatrixType> Load>
+  template <LoadOverTime<MatrixType> Load = SystemLoad<MatrixType>>
   StepReport step(const Load& load, FirstOrderState& state) {
     const SystemLoad<MatrixType>& end = load_at<MatrixType>(load, state.time + h_);
     check(end, state);

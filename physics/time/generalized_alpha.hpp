@@ -31,7 +31,7 @@ class GeneralizedAlpha : public ImplicitIntegrator<System> {
   EnergyBehaviour energy_behaviour() const { return EnergyBehaviour::Bounded; }
 
   /// One time step under a load that is evaluated at t + (1 − α_f) h.
-  template <LoadOverTime<MatrixType> Load>
+  template <LoadOverTime<MatrixType> Load = SystemLoad<MatrixType>>
   StepReport step(const Load& load, State& state) {
     const auto& [h, alpha_m, alpha_f, beta, gamma, c_m, c_d] = with_;
     const SystemLoad<MatrixType>& amid = load_at<MatrixType>(load, state.time + (1 - alpha_f) * h);

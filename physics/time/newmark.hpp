@@ -38,7 +38,7 @@ class Newmark : public ImplicitIntegrator<System> {
   }
 
   /// One time step under a load that is evaluated at its end.
-  template <LoadOverTime<MatrixType> Load>
+  template <LoadOverTime<MatrixType> Load = SystemLoad<MatrixType>>
   StepReport step(const Load& load, State& state) {
     const double h = this->h_;
     const SystemLoad<MatrixType>& end = load_at<MatrixType>(load, state.time + h);

@@ -333,10 +333,10 @@ TEST(Newmark, AFreeBodyFallsAndTumblesAsARigidOneWould) {
   const double duration = 0.5;
   state = run(system, state, system.project({.gravity = gravity, .forces = {}, .springs = {}}), duration, 250,
               {.tolerance = 1e-9});
-  EXPECT_TRUE(is_near(momentum(state), mass * (velocity + duration * gravity), 1e-7 * mass));
+  EXPECT_TRUE(is_near(momentum(state), Point{mass * (velocity + duration * gravity)}, 1e-7 * mass));
   Point moved = Point::Zero();
   for (Index v = 0; v < mesh.num_nodes(); ++v) moved += system.nodal_mass()[v] / mass * state.u.segment<3>(3 * v);
-  EXPECT_TRUE(is_near(moved, velocity * duration + 0.5 * gravity * duration * duration, 1e-7));
+  EXPECT_TRUE(is_near(moved, Point{velocity * duration + 0.5 * gravity * duration * duration}, 1e-7));
 }
 
 TEST(Newmark, ABodyAtRestAnywhereIsConverged) {

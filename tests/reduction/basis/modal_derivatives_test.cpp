@@ -1,3 +1,4 @@
+#include <numerics/linear/spd_solver.hpp>
 #include <physics/mesh/mass.hpp>
 #include <physics/model/discrete_shell.hpp>
 #include <physics/model/tet_elasticity.hpp>
