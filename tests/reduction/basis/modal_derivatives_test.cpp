@@ -1,4 +1,5 @@
 #include <numerics/linear/spd_solver.hpp>
+#include <numerics/optimize/newton.hpp>
 #include <physics/mesh/mass.hpp>
 #include <physics/model/discrete_shell.hpp>
 #include <physics/model/tet_elasticity.hpp>

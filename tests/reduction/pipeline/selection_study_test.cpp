@@ -1,3 +1,4 @@
+#include <reduction/pipeline/reduce.hpp>
 #include <reduction/pipeline/selection_study.hpp>
 #include <sparse/selectors/selector_library.hpp>
 #include <tests/support/bars.hpp>

@@ -1,5 +1,5 @@
 #include <reduction/basis/modal_basis.hpp>
-#include <reduction/pipeline/reduce_stages.hpp>
+#include <reduction/pipeline/training.hpp>
 #include <reduction/system/reduced_system.hpp>
 #include <reduction/training/equilibrium_fitting.hpp>
 #include <reduction/training/training_poses.hpp>
@@ -102,10 +102,12 @@ TEST_F(EquilibriumFittingTest, RefittedWeightsBringEquilibriaNearer) {
   const Matrix Q = equilibrium_poses(reduced, modes, linear);
   using Model = TetElasticity<StVenantKirchhoff>;
   Training<Model, NodalBasis> training{
-      .system = std::shared_ptr<const StvkBar>(std::shared_ptr<void>(), &system),
-      .subspace = basis,
-      .rest_stiffness = stiffness,
-      .modes = modes,
+      .object = {.system = std::shared_ptr<const StvkBar>(std::shared_ptr<void>(), &system),
+                 .subspace = basis,
+                 .traits = {},
+                 .rest_stiffness = stiffness,
+                 .modes = modes},
+      .poses = {},
       .fitting = {system.shared_model(), basis, force_metric(ForceNorm::Stiffness, modes), linear},
       .held_out = {}};
   const auto select = [&] {
@@ -121,7 +123,7 @@ TEST_F(EquilibriumFittingTest, RefittedWeightsBringEquilibriaNearer) {
   EXPECT_TRUE(std::ranges::includes(rough.indices, refit.indices));
   EXPECT_GT(refit.weights.minCoeff(), 0);
   const auto moved = [&](const WorkingComponents& working) {
-    return this->moved(training.reduced_system(working.indices, working.weights), Q);
+    return this->moved(training.object.reduced_system(working.indices, working.weights), Q);
   };
   EXPECT_LT(moved(refit), 0.97 * moved(rough));
   EXPECT_LE(moved(refit), moved(before));
