@@ -6,6 +6,7 @@
 #include <io/builtin/builtin_meshes.hpp>
 #include <io/mesh/node_sets.hpp>
 #include <physics/body/solid_model.hpp>
+#include <physics/model/tet_elasticity.hpp>
 #include <reduction/model/with_reduced_system.hpp>
 #include <reduction/pipeline/reduce.hpp>
 

@@ -112,12 +112,12 @@ TEST_F(SimulateCommandTest, NamesIntegratorsAndForcesItDoesNotKnow) {
 
 TEST_F(SimulateCommandTest, AFloorStopsWhatFalls) {
   reduce_ball();
-  const auto lowest = [&](const char* scene, const char* folder) {
+  const auto lowest = [&](const char* scene, const char* output) {
     write("scene.json", scene);
-    EXPECT_EQ(report({"simulate", "ball.supple", "--scene", "scene.json", "--track", "0", "-o", folder})["status"],
+    EXPECT_EQ(report({"simulate", "ball.supple", "--scene", "scene.json", "--track", "0", "-o", output})["status"],
               "complete");
     double least = 0;
-    for (const double y : table(std::string(folder) + "/tracked.csv").numbers("uy0")) least = std::min(least, y);
+    for (const double y : table(std::string(output) + "/tracked.csv").numbers("uy0")) least = std::min(least, y);
     return least;
   };
   const double free = lowest(R"({"duration": 0.6, "step": 0.005, "gravity": [0, -9.81, 0]})", "free");
