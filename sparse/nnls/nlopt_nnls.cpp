@@ -1,4 +1,5 @@
 #include <core/check.hpp>
+#include <core/stable_norm.hpp>
 #include <sparse/nnls/nlopt_nnls.hpp>
 #include <sparse/nnls/power_scaling.hpp>
 
@@ -48,7 +49,7 @@ NnlsFit QuasiNewtonNnls::operator()(MatrixIn A, VectorIn b) const {
   NnlsFit fit;
   fit.w = Vector::Zero(n);
   const Vector norms = A.colwise().stableNorm().transpose();
-  const double b_norm = b.stableNorm();
+  const double b_norm = stable_norm(b);
   if (!norms.allFinite() || !std::isfinite(b_norm)) {
     fit.report.status = Status::NotFinite;
     return fit;

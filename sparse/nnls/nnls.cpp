@@ -1,5 +1,6 @@
 #include <core/check.hpp>
 #include <core/parallel.hpp>
+#include <core/stable_norm.hpp>
 #include <sparse/nnls/active_set.hpp>
 #include <sparse/nnls/nnls.hpp>
 #include <sparse/nnls/power_scaling.hpp>
@@ -196,7 +197,7 @@ NnlsFit Nnls::operator()(MatrixIn A, VectorIn b, std::span<const Index> start) c
   for (Index i : start)
     require(0 <= i && i < n, "passive holds " + std::to_string(i) + ", expected 0 to " + std::to_string(n - 1));
   const Vector norms = A.colwise().stableNorm().transpose();
-  const double b_norm = b.stableNorm();
+  const double b_norm = stable_norm(b);
   if (!norms.allFinite() || !std::isfinite(b_norm)) {
     NnlsFit fit;
     fit.w = Vector::Zero(n);

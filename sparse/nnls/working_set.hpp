@@ -1,6 +1,7 @@
 #pragma once
 /// \file Columns that a selector currently works with, and what their least-squares fit needs.
 
+#include <core/stable_norm.hpp>
 #include <sparse/nnls/nnls.hpp>
 #include <sparse/nnls/signs.hpp>
 #include <sparse/problem/fitting_problem.hpp>
@@ -83,7 +84,7 @@ class WorkingSet {
   void polish(NnlsSolution& solution, Signs signs) const {
     for (int step = 0; step < 3; ++step) {
       const Vector correction = solution.passive.solve(block_.transpose_times(residual(solution.w)));
-      if (correction.stableNorm() <= 1e-14 * solution.w.stableNorm()) return;
+      if (stable_norm(correction) <= 1e-14 * stable_norm(solution.w)) return;
       const Vector w = solution.w + correction;
       if ((signs == Signs::NonNegative && !(w.minCoeff() >= 0)) || residual(w).norm() >= residual(solution.w).norm())
         return;

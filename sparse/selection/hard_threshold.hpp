@@ -1,6 +1,7 @@
 #pragma once
 /// \file Steps of iterative hard thresholding, and its projections H_s and H_s⁺ as sets of positions.
 
+#include <core/stable_norm.hpp>
 #include <core/types.hpp>
 #include <sparse/nnls/signs.hpp>
 
@@ -15,7 +16,7 @@ namespace supple {
 template <typename Product>
 double minimising_step(const Vector& p, const Product& A) {
   static_assert(std::same_as<decltype(A(p)), Vector>, "an expression would refer to vectors that are gone");
-  const double norm = p.stableNorm();
+  const double norm = stable_norm(p);
   return norm > 0 ? 1 / A(p / norm).squaredNorm() : 0;
 }
 

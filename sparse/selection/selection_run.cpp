@@ -1,3 +1,4 @@
+#include <core/stable_norm.hpp>
 #include <sparse/selection/selection_run.hpp>
 
 #include <cstdio>
@@ -41,7 +42,7 @@ SelectionRules::SelectionRules(const SelectionRequest& request, Index cols, cons
   for (Index i = 0; i < b.size(); ++i)
     if (!std::isfinite(b[i]))
       throw InputError("b is " + std::to_string(b[i]) + " in row " + std::to_string(i) + ", expected a finite number");
-  const double norm = b.stableNorm();
+  const double norm = stable_norm(b);
   if (norm != 0) require_square_in_range("the norm of b", norm);
 
   role_.assign(cols, request.candidates.empty() ? Role::Candidate : Role::Excluded);

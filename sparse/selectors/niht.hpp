@@ -2,6 +2,7 @@
 /// \file Normalized iterative hard thresholding (Blumensath & Davies 2010), plain and non-negative: gradient
 /// steps and thresholding, no least-squares problem is solved.
 
+#include <core/stable_norm.hpp>
 #include <sparse/selection/hard_threshold.hpp>
 #include <sparse/selection/selection_run.hpp>
 #include <sparse/selection/smallest_selection.hpp>
@@ -80,7 +81,7 @@ Selection iterative_hard_thresholding(const Options& options, Signs signs, const
     p << X.block().transpose_times(r), drawn.correlations(entering);
     w_S << w, Vector::Zero(fresh.size());
     Vector along = p;  // p_S
-    if (normalized && p.head(n).stableNorm() > 1e-12 * p.stableNorm()) along.tail(fresh.size()).setZero();
+    if (normalized && stable_norm(p.head(n)) > 1e-12 * stable_norm(p)) along.tail(fresh.size()).setZero();
     double mu = (options.step == NihtStep::Paper ? 2 : 1) * minimising_step(along, A_S);
 
     Vector w_next, change;
@@ -96,10 +97,10 @@ Selection iterative_hard_thresholding(const Options& options, Signs signs, const
       std::tie(kept, chosen) = split_at(n, support);
       change = w_next - w_S;
       const bool same_support = chosen.empty() && static_cast<Index>(kept.size()) == n;
-      const bool too_long = std::sqrt(mu) * A_S(change).norm() > std::sqrt(0.99) * change.stableNorm();
+      const bool too_long = std::sqrt(mu) * A_S(change).norm() > std::sqrt(0.99) * stable_norm(change);
       if (!normalized || same_support || !too_long) break;
     }
-    if (!(change.stableNorm() > 1e-12 * w_next.stableNorm())) {
+    if (!(stable_norm(change) > 1e-12 * stable_norm(w_next))) {
       if (drawn.size() == static_cast<Index>(rest.size()))
         return finish(run.status_at_size(), "the weights do not change");
       if (++unchanged >= options.patience) return finish(Status::Stagnated, "repeated draws change nothing");

@@ -3,6 +3,7 @@
 
 #include <core/parallel.hpp>
 #include <core/random.hpp>
+#include <core/stable_norm.hpp>
 #include <sparse/selection/selection_run.hpp>
 #include <sparse/selection/smallest_selection.hpp>
 #include <sparse/selectors/baselines.hpp>
@@ -45,7 +46,7 @@ void visit_columns(const P& problem, const std::vector<Index>& columns, const Vi
     parallel_ranges(block.cols(), 16, [&](Index first, Index last) {
       for (Index k = first; k < last; ++k) {
         problem.column(columns[begin + k], block.col(k));
-        const double norm = block.col(k).stableNorm();
+        const double norm = stable_norm(block.col(k));
         if (norm != 0)
           require_square_in_range("the norm of column " + std::to_string(columns[begin + k]) + " of A", norm);
       }

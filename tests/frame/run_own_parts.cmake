@@ -10,7 +10,7 @@ endfunction()
 file(MAKE_DIRECTORY ${WORK})
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${PREFIX}
     -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_BUILD_TYPE=Release
-    "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG" -DPARTS=${PARTS})
+    "-DCMAKE_CXX_FLAGS_RELEASE=-O1" -DPARTS=${PARTS})
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/own_parts)
 run(${WORK}/build/own_tests)
