@@ -11,12 +11,21 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 namespace supple {
+
+/// "red, green": what `name` makes of the items of a range.
+template <typename Range, typename Name = std::identity>
+std::string listed(const Range& items, Name name = {}) {
+  std::string text;
+  for (const auto& item : items) text += (text.empty() ? "" : ", ") + std::string(std::invoke(name, item));
+  return text;
+}
 
 /// The names of an enum's values, in one table: specialise it beside the enum,
 /// `template <> inline constexpr std::array names_of<Colour>{Named{Colour::Red, "red"}, …};`.
@@ -30,11 +39,10 @@ Named(E, const char*) -> Named<E>;
 template <typename E>
 inline constexpr auto names_of = nullptr;
 
-/// "red, green"
 template <typename E>
-std::string all_names_of() {
-  std::string names;
-  for (const auto& [value, name] : names_of<E>) names += (names.empty() ? "" : ", ") + std::string(name);
+std::vector<std::string> all_names_of() {
+  std::vector<std::string> names;
+  for (const auto& [value, name] : names_of<E>) names.emplace_back(name);
   return names;
 }
 template <typename E>
@@ -49,7 +57,7 @@ E value_named(std::string_view name, std::string_view what) {
   for (const auto& [value, known] : names_of<E>)
     if (known == name) return value;
   throw std::invalid_argument(std::string(what) + " '" + std::string(name) + "' is not known, expected one of " +
-                              all_names_of<E>());
+                              listed(all_names_of<E>()));
 }
 
 enum class OptionType { WholeNumber, Number, Flag, Word };
@@ -120,13 +128,10 @@ class OptionsOf {
   T make(const OptionValues& values, const std::string& whose) const {
     T result = defaults_;
     for (const auto& [name, text] : values) {
-      const Item* found = nullptr;
-      std::string known;
-      for (const Item& item : items_) {
-        if (item.info.name == name) found = &item;
-        known += (known.empty() ? "" : ", ") + item.info.name;
-      }
-      require(found, whose + " has no option '" + name + "', expected " + (known.empty() ? "none" : "one of " + known));
+      const auto found = std::ranges::find(items_, name, [](const Item& item) { return item.info.name; });
+      require(found != items_.end(), whose + " has no option '" + name + "', expected " +
+                                         (items_.empty() ? "none" : "one of ") +
+                                         listed(items_, [](const Item& item) { return item.info.name; }));
       try {
         found->set(result, text);
       } catch (const std::invalid_argument& error) {
@@ -217,9 +222,8 @@ class Registry {
   const Entry& at(std::string_view name) const {
     const std::scoped_lock lock(mutex_);
     if (const Entry* entry = found(name)) return *entry;
-    std::string known;
-    for (const Entry& entry : entries_) known += (known.empty() ? "" : ", ") + std::string(entry.name);
-    throw std::invalid_argument(kind_ + " '" + std::string(name) + "' is not known, expected one of " + known + hint_);
+    throw std::invalid_argument(kind_ + " '" + std::string(name) + "' is not known, expected one of " +
+                                listed(entries_, &Entry::name) + hint_);
   }
   bool contains(std::string_view name) const {
     const std::scoped_lock lock(mutex_);

@@ -223,7 +223,7 @@ void EditCommand::declare(CLI::App& app) {
       ->type_name("FILE.json");
   command.add_flag("--full", full, "Solve the unreduced system, the reference");
   command.add_option("--solver", solver, "Of the equilibrium [newton]")
-      ->check(CLI::IsMember({"newton", "bfgs", "nlopt"}));
+      ->check(CLI::IsMember(solver_names(static_solvers)));
   command.add_option("--tolerance", tolerance, "Residual of a solve against its largest force [1e-6]");
   command.add_option("--frames", frames, "What ParaView gets of every solve")
       ->capture_default_str()

@@ -285,10 +285,7 @@ void declare_choice(CLI::App& command, SelectCommand& c) {
       ->type_name("N")
       ->check(whole_number())
       ->group(method_group);
-  command.add_option("--seed", c.seed, "Of all random choices")
-      ->capture_default_str()
-      ->check(whole_number(0))
-      ->group(method_group);
+  declare_seed(command, c.seed);
 }
 
 }  // namespace

@@ -83,6 +83,13 @@ void declare_threads(CLI::App& command, int& threads) {
       ->check(CLI::Range(0, 4096));
 }
 
+void declare_seed(CLI::App& command, std::uint64_t& seed) {
+  command.add_option("--seed", seed, "Of all random choices")
+      ->capture_default_str()
+      ->check(whole_number(0))
+      ->group(method_group);
+}
+
 void declare_plugins(CLI::App& command) {
   command
       .add_option_function<std::vector<std::string>>(
@@ -117,10 +124,7 @@ void declare_problem(CLI::App& command, ProblemOptions& problem) {
       ->type_name("R")
       ->check(whole_number())
       ->group(method_group);
-  command.add_option("--seed", problem.seed, "Of all random choices")
-      ->capture_default_str()
-      ->check(whole_number(0))
-      ->group(method_group);
+  declare_seed(command, problem.seed);
 }
 
 void declare_training(CLI::App& command, ProblemOptions& problem) {
@@ -155,12 +159,12 @@ void declare_training(CLI::App& command, ProblemOptions& problem) {
       ->check(number_between(0, 20))
       ->group(method_group);
   command.add_option("--norm", problem.norm, "Measure of the fitted forces [stiffness; paper: mass]")
-      ->check(CLI::IsMember({"mass", "stiffness"}))
+      ->check(CLI::IsMember(all_names_of<ForceNorm>()))
       ->group(method_group);
   command
       .add_option("--inverted", problem.inverted,
                   "Poses with inverted cells [keep; shrink for laws that are undefined there]")
-      ->check(CLI::IsMember({"keep", "shrink", "redraw"}))
+      ->check(CLI::IsMember(all_names_of<InvertedPoses>()))
       ->group(method_group);
   command
       .add_option("--poses-file", problem.poses_file, "Poses instead of random ones: .npy, tensor file or trajectory")

@@ -18,6 +18,7 @@ constexpr auto method_group = "Method";
 
 CLI::Option& declare_json(CLI::App& command, std::filesystem::path& json);
 void declare_threads(CLI::App& command, int& threads);
+void declare_seed(CLI::App& command, std::uint64_t& seed);
 /// Plug-ins are loaded while the line is read, before anything asks for what they add.
 void declare_plugins(CLI::App& command);
 

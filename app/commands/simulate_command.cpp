@@ -304,7 +304,7 @@ void SimulateCommand::declare(CLI::App& app) {
           "--precision", precision,
           "Of the basis where components are, as kept for forces; sums are double [dense bases: single, others: "
           "double]")
-      ->check(CLI::IsMember({"double", "single"}));
+      ->check(CLI::IsMember(all_names_of<RowPrecision>()));
   command.add_option("-o,--output", output, "Folder for trajectory, energies, pictures and ParaView's series.pvd")
       ->type_name("DIR");
   command.add_option("--every", every, "A frame after so many steps [at most 100 frames]")->type_name("N");

@@ -91,7 +91,7 @@ EditScene read_edit_scene(const std::filesystem::path& path, const Body& body) {
   if (scene.edits.empty()) file.fail("edits", "is empty, expected at least one edit");
   if (const auto solver = file.object_if("solver")) {
     if (solver->contains("method"))
-      scene.solver = solver_named(static_solvers, solver->choice("method", {"newton", "bfgs", "nlopt"}));
+      scene.solver = solver_named(static_solvers, solver->choice("method", solver_names(static_solvers)));
     if (solver->contains("tolerance")) scene.tolerance = solver->number("tolerance", positive);
     if (solver->contains("max_iterations")) scene.max_iterations = solver->integer("max_iterations", at_least(1));
   }

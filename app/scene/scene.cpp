@@ -128,11 +128,8 @@ TimedSprings read_springs(const JsonFields& fields, const Body& body) {
 template <typename Entry>
 Choice read_choice(const JsonFields& fields, std::string_view key, const Registry<Entry>& registry) {
   Choice choice{fields.text(key)};
-  if (!registry.contains(choice.name)) {
-    std::string known;
-    for (const std::string& name : registry.names()) known += (known.empty() ? "" : ", ") + name;
-    fields.fail(key, "is '" + choice.name + "', expected one of " + known);
-  }
+  if (!registry.contains(choice.name))
+    fields.fail(key, "is '" + choice.name + "', expected one of " + listed(registry.names()));
   for (const OptionInfo& option : registry.at(choice.name).options)
     if (fields.contains(option.name)) choice.options.emplace_back(option.name, read_option(fields, option));
   return choice;
@@ -203,7 +200,7 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
                      damping->number_or("beta", 0, non_negative, "s")};
   if (const auto solver = file.object_if("solver")) {
     if (solver->contains("method"))
-      scene.solver = solver_named(step_solvers, solver->choice("method", {"newton", "bfgs", "broyden"}));
+      scene.solver = solver_named(step_solvers, solver->choice("method", solver_names(step_solvers)));
     if (solver->contains("tolerance")) scene.tolerance = solver->number("tolerance", positive);
     if (solver->contains("max_iterations")) scene.max_iterations = solver->integer("max_iterations", at_least(1));
     for (const std::string_view moved : {"beta", "gamma"})

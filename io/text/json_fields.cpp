@@ -207,11 +207,11 @@ std::string JsonFields::text(std::string_view key) const {
   return field(key).text();
 }
 
-std::string JsonFields::choice(std::string_view key, std::initializer_list<std::string_view> options) const {
+std::string JsonFields::choice(std::string_view key, const std::vector<std::string>& options) const {
   const Field choice = field(key);
   if (choice.value.is_string() && std::ranges::find(options, choice.text()) != options.end()) return choice.text();
   std::string list;
-  for (const std::string_view option : options) list += (list.empty() ? "\"" : ", \"") + std::string(option) + '"';
+  for (const std::string& option : options) list += (list.empty() ? "\"" : ", \"") + option + '"';
   choice.expect("one of " + list);
 }
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -60,7 +59,7 @@ class JsonFields {
   bool flag(std::string_view key) const;
   std::string text(std::string_view key) const;
   /// One of the options.
-  std::string choice(std::string_view key, std::initializer_list<std::string_view> options) const;
+  std::string choice(std::string_view key, const std::vector<std::string>& options) const;
   /// A list of numbers, of stated length unless `any_size`.
   Vector numbers(std::string_view key, Index size, const Interval& range = any_number,
                  std::string_view unit = "") const;
@@ -84,7 +83,7 @@ class JsonFields {
     return contains(key) ? text(key) : std::string(fallback);
   }
   std::string choice_or(std::string_view key, std::string_view fallback,
-                        std::initializer_list<std::string_view> options) const {
+                        const std::vector<std::string>& options) const {
     return contains(key) ? choice(key, options) : std::string(fallback);
   }
   Point point_or(std::string_view key, const Point& fallback, std::string_view unit = "m") const {

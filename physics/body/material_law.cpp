@@ -8,16 +8,6 @@
 
 namespace supple {
 
-namespace {
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
-}  // namespace
-
 std::vector<double> MaterialLaw::values(const IsotropicModuli& moduli, const Named& replaced) const {
   std::vector<double> result = from(moduli);
   for (const auto& [parameter, value] : replaced) {

@@ -60,23 +60,11 @@ NamedSubspace modal() {
 }
 
 NamedSubspace derivatives() {
-  const OptionsOf<ModalDerivatives> options =
+  return named_subspace(
+      "derivatives", "modal derivatives",
       OptionsOf(ModalDerivatives{.affine_fields = true})
-          .add("affine_fields", &ModalDerivatives::affine_fields, "whether free parts bring all 12 affine motions");
-  NamedSubspace entry{"derivatives", "modal derivatives", options.info(), {}};
-  entry.build = [options](const RestState& object, const SubspaceChoice& choice, const OptionValues& values,
-                          const SubspaceRun& run) {
-    ModalDerivatives build = options.make(values, "subspace derivatives");
-    build.num_modes = choice.modes;
-    build.dimension = choice.dimension;
-    build.tolerance = choice.tolerance;
-    build.seed = choice.seed;
-    build.progress = run.progress;
-    AnyBasis basis;
-    run.stage("modes and derivatives", [&] { basis = share(build(object)); });
-    return basis;
-  };
-  return entry;
+          .add("affine_fields", &ModalDerivatives::affine_fields, "whether free parts bring all 12 affine motions"),
+      "modes and derivatives");
 }
 
 NamedSubspace skinning() {
@@ -93,17 +81,6 @@ NamedSubspace skinning() {
                });
 }
 
-NamedSubspace pca() {
-  return plain("pca", "principal components of snapshots",
-               [](const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run) {
-                 AnyBasis basis;
-                 run.stage("subspace", [&] {
-                   basis = share(PcaBasis{.snapshots = choice.snapshots, .dimension = choice.dimension}(object));
-                 });
-                 return basis;
-               });
-}
-
 /// The parts of a name, each with its options.
 std::vector<Choice> choices_of(const std::string& name) {
   std::vector<Choice> parts;
@@ -113,12 +90,7 @@ std::vector<Choice> choices_of(const std::string& name) {
       end = name.find('+', end + 1);
     end = std::min(end, name.size());
     Choice part = Choice::parse(name.substr(begin, end - begin));
-    if (!subspaces().contains(part.name)) {
-      std::string known;
-      for (const std::string& other : known_subspaces()) known += (known.empty() ? "" : ", ") + other;
-      throw std::invalid_argument("subspace '" + part.name + "' is not known, expected one of " + known +
-                                  ", or several with '+' between");
-    }
+    (void)subspaces().at(part.name);
     require(std::ranges::find(parts, part.name, &Choice::name) == parts.end(),
             "subspace '" + name + "' has '" + part.name + "' twice");
     parts.push_back(std::move(part));
@@ -130,7 +102,10 @@ std::vector<Choice> choices_of(const std::string& name) {
 }  // namespace
 
 Registry<NamedSubspace>& subspaces() {
-  static Registry<NamedSubspace> all("subspace", {extended(), modal(), derivatives(), skinning(), pca()});
+  static Registry<NamedSubspace> all("subspace",
+                                     {extended(), modal(), derivatives(), skinning(),
+                                      named_subspace<PcaBasis>("pca", "principal components of snapshots")},
+                                     ", or several with '+' between");
   return all;
 }
 

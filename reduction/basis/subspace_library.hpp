@@ -33,15 +33,15 @@ struct NamedSubspace {
 };
 
 /// The entry of a builder of one's own. Its members num_modes, dimension, snapshots, tolerance, seed and progress, if it
-/// has them, take what the choice says.
+/// has them, take what the choice says. \param stage  what reports call its time.
 ///
 ///     subspaces().add(named_subspace<MyBasis>("my-basis", "what it spans"));
 template <SubspaceBuilder Builder>
 NamedSubspace named_subspace(std::string name, std::string description,
-                             OptionsOf<Builder> options = OptionsOf<Builder>()) {
+                             OptionsOf<Builder> options = OptionsOf<Builder>(), std::string stage = "subspace") {
   NamedSubspace entry{name, std::move(description), options.info(), {}};
-  entry.build = [name, options](const RestState& object, const SubspaceChoice& choice, const OptionValues& values,
-                                const SubspaceRun& run) -> AnyBasis {
+  entry.build = [name, options, stage](const RestState& object, const SubspaceChoice& choice,
+                                       const OptionValues& values, const SubspaceRun& run) -> AnyBasis {
     Builder build = options.make(values, "subspace " + name);
     if constexpr (requires { build.num_modes = choice.modes; }) build.num_modes = choice.modes;
     if constexpr (requires { build.dimension = choice.dimension; }) build.dimension = choice.dimension;
@@ -50,7 +50,7 @@ NamedSubspace named_subspace(std::string name, std::string description,
     if constexpr (requires { build.seed = choice.seed; }) build.seed = choice.seed;
     if constexpr (requires { build.progress = run.progress; }) build.progress = run.progress;
     AnyBasis result;
-    run.stage("subspace", [&] {
+    run.stage(stage, [&] {
       auto basis = build(object);
       result = std::make_shared<const decltype(basis)>(std::move(basis));
     });

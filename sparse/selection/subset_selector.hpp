@@ -6,6 +6,7 @@
 #include <sparse/selection/selection.hpp>
 
 #include <concepts>
+#include <cstdint>
 
 namespace supple {
 
@@ -32,5 +33,12 @@ concept SubsetSelectorFor = FittingProblem<P> &&
 
 template <typename S>
 concept SubsetSelector = SubsetSelectorFor<S, archetype::Fitting>;
+
+/// A selector with another seed, where it draws at random.
+template <typename Selector>
+Selector seeded(Selector selector, std::uint64_t seed) {
+  if constexpr (requires { selector.seed = seed; }) selector.seed = seed;
+  return selector;
+}
 
 }  // namespace supple

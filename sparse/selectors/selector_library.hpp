@@ -32,9 +32,7 @@ requires SubsetSelectorFor<Selector, AnyProblem> NamedSelector
 named_selector(std::string name, std::string description, OptionsOf<Selector> options = OptionsOf<Selector>()) {
   NamedSelector entry{name, std::move(description), options.info(), {}};
   entry.make = [name, options](const OptionValues& values, std::uint64_t seed) -> NamedSelector::Run {
-    Selector select = options.make(values, "selector " + name);
-    if constexpr (requires { select.seed = seed; }) select.seed = seed;
-    return select;
+    return seeded(options.make(values, "selector " + name), seed);
   };
   return entry;
 }

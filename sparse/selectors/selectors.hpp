@@ -40,7 +40,7 @@ inline const auto& selector_table() {
         .add("tolerance", &S::tolerance, "relative error to stop at")
         .add("max_iterations", &S::max_iterations, "iterations at most")
         .add("candidates_per_size", &S::candidates_per_size, "columns drawn in each, over the size; inf: all")
-        .add("step", &S::step, "along the gradient, one of " + all_names_of<decltype(S::step)>())
+        .add("step", &S::step, "along the gradient, one of " + listed(all_names_of<decltype(S::step)>()))
         .add("patience", &S::patience, "draws in a row that change nothing before it stops");
   };
   static const std::tuple table{
@@ -92,24 +92,15 @@ inline const auto& selector_table() {
 inline const auto selector_names =
     std::apply([](const auto&... entries) { return std::array{entries.name...}; }, selector_table());
 
-/// A selector with another seed, where it draws at random.
-template <typename Selector>
-Selector seeded(Selector selector, std::uint64_t seed) {
-  if constexpr (requires { selector.seed = seed; }) selector.seed = seed;
-  return selector;
-}
-
 /// Calls use(selector) with the selector of that name in the table, its other options at their defaults.
 /// \throws std::invalid_argument naming the known ones.
 template <typename Use>
 auto with_selector(std::string_view name, std::uint64_t seed, const Use& use) {
   using Result = decltype(use(NnSp{}));
   std::optional<Result> result;
-  std::string known;
   std::apply(
       [&](const auto&... entries) {
         const auto try_one = [&](const auto& entry) {
-          known += (known.empty() ? "" : ", ") + std::string(entry.name);
           if (entry.name != name) return false;
           result.emplace(use(seeded(entry.options.make({}, std::string(name)), seed)));
           return true;
@@ -117,7 +108,7 @@ auto with_selector(std::string_view name, std::uint64_t seed, const Use& use) {
         (void)(try_one(entries) || ...);
       },
       selector_table());
-  require(result.has_value(), "selector is '" + std::string(name) + "', expected one of " + known);
+  require(result.has_value(), "selector is '" + std::string(name) + "', expected one of " + listed(selector_names));
   return *std::move(result);
 }
 

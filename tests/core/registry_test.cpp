@@ -34,7 +34,7 @@ OptionsOf<Brush> brush_options() {
       .add("pressure", &Brush::pressure, "[N]")
       .add("wet", &Brush::wet, "or dry")
       .add("hair", &Brush::hair, "of which animal")
-      .add("colour", &Brush::colour, "one of " + all_names_of<Colour>());
+      .add("colour", &Brush::colour, "one of " + listed(all_names_of<Colour>()));
 }
 
 TEST(NamesOf, GoBothWays) {
