@@ -1,7 +1,7 @@
 // A subspace of one's own, from the smallest struct to a simulation: polynomials of the rest positions.
 //
 //   $ example_12_own_subspace
-//   60 unknowns, 80 of 2304 tets: error 0.0067 in training; after 1.00 s the tip is 10.1 % off the full object
+//   105 unknowns, 120 of 2304 tets: error 0.0121 in training; after 1.00 s the tip is 4.7 % off the full object
 #include <io/builtin/builtin_meshes.hpp>
 #include <io/mesh/node_sets.hpp>
 #include <physics/body/solid_model.hpp>
@@ -35,8 +35,8 @@ int main() {
   using Model = TetElasticity<StVenantKirchhoff>;
   const auto full = std::make_shared<const FullSystem<Model>>(make_model<StVenantKirchhoff>(solid), solid.nodal_mass(),
                                                               solid.fixed_nodes);
-  const auto subspace = std::make_shared<const NodalBasis>(PolynomialBasis{.degree = 3}(*full));
-  const auto reduced = reduce(full, subspace, NnSp{}, {.points = 80});
+  const auto subspace = std::make_shared<const NodalBasis>(PolynomialBasis{.degree = 4}(*full));
+  const auto reduced = reduce(full, subspace, NnSp{}, {.points = 120});
 
   const Index tip = select_nodes(mesh.nodes, "x>99%").front();
   const Point exact = fall(*full, tip), ours = fall(reduced.system(), tip);
@@ -44,5 +44,5 @@ int main() {
   std::printf(
       "%td unknowns, %td of %td tets: error %.4f in training; after 1.00 s the tip is %.1f %% off the full object\n",
       subspace->dim(), reduced.report.points, mesh.num_cells(), reduced.report.training_error, 100 * off);
-  return off < 0.2 ? 0 : 1;
+  return off < 0.1 ? 0 : 1;
 }
