@@ -1,7 +1,7 @@
 #pragma once
 /// \file Colours, and maps from numbers to colours whose steps look equal.
 
-#include <Eigen/Core>
+#include <core/types.hpp>
 
 namespace supple {
 

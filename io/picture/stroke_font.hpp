@@ -1,7 +1,7 @@
 #pragma once
 /// \file Stroke font for captions in pictures: a small alphabet of lines, no font files needed, sharp at every size.
 
-#include <Eigen/Core>
+#include <core/types.hpp>
 
 #include <string_view>
 #include <vector>

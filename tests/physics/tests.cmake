@@ -1,10 +1,13 @@
+# GCC 12 takes vectors of three numbers, read as part of a wide one, for reads beyond their end.
+set_source_files_properties(physics/material/rotation_test.cpp physics/model/rods_test.cpp
+  PROPERTIES COMPILE_OPTIONS $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
 supple_test(physics LABEL unit LINKS supple::physics
   SOURCES physics/mesh/tet_mesh_test.cpp physics/material/materials_test.cpp physics/material/rotation_test.cpp
           physics/model/force_model_test.cpp physics/model/tet_elasticity_test.cpp
           physics/system/dynamical_system_test.cpp physics/system/full_system_test.cpp
           physics/time/newmark_test.cpp physics/statics/static_solver_test.cpp)
 supple_test(any_system LABEL unit LINKS supple::reduction SOURCES physics/system/any_system_test.cpp)
-supple_test(time_integrators LABEL unit LINKS supple::physics SOURCES physics/time/time_integrator_test.cpp)
+supple_test(time_integrators OPTIMIZED LABEL unit LINKS supple::physics SOURCES physics/time/time_integrator_test.cpp)
 supple_test(outside_forces LABEL unit LINKS supple::reduction SOURCES physics/load/outside_force_test.cpp)
 supple_test(shells LABEL unit LINKS supple::physics
   SOURCES physics/mesh/triangle_mesh_test.cpp physics/model/discrete_shell_test.cpp)

@@ -67,7 +67,9 @@ void Lamp::shine_on(const SurfacePoints& points, float weight, std::vector<float
   float* total = sum.data();
   const int count = static_cast<int>(sum.size()), stride = size;
   const Vector3f t = towards, u = scale * across, v = scale * along;
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC ivdep
+#endif
   for (int k = 0; k < count; ++k) {  // without branches, for the sake of vector instructions
     const float cosine = nx[k] * t[0] + ny[k] * t[1] + nz[k] * t[2];
     const float qx = px[k] + off_surface * nx[k], qy = py[k] + off_surface * ny[k], qz = pz[k] + off_surface * nz[k];
