@@ -5,7 +5,7 @@ supple_test(io_output LABEL unit LINKS supple::io supple::pictures
 supple_test(io_meshes LABEL unit LINKS supple::io ZLIB::ZLIB
   SOURCES io/mesh_files.cpp io/mesh/mesh_awkward_test.cpp io/mesh/mesh_node_sets_test.cpp io/mesh/mesh_reader_test.cpp
           io/mesh/solid_mesh_reader_test.cpp io/builtin/mesh_builtin_test.cpp)
-supple_test(io_surfaces LABEL unit LINKS supple::io ZLIB::ZLIB
+supple_test(io_surfaces OPTIMIZED LABEL unit LINKS supple::io ZLIB::ZLIB
   SOURCES io/mesh_files.cpp io/surface_files.cpp io/surface/surface_awkward_test.cpp
           io/surface/surface_reader_test.cpp io/builtin/surface_builtin_test.cpp)
 # Real models and awkward inputs that are no part of the project: tests skip where they are absent.

@@ -5,4 +5,4 @@ supple_test(nnls_adversarial LABEL unit LINKS supple::sparse SOURCES sparse/nnls
 supple_test(pruning QUICK LABEL unit LINKS supple::sparse SOURCES sparse/nnls/pruning_test.cpp)
 supple_test(exchanging QUICK LABEL unit LINKS supple::sparse SOURCES sparse/selectors/exchanging_test.cpp)
 supple_test(nn_htp QUICK LABEL unit LINKS supple::sparse SOURCES sparse/selectors/nn_htp_test.cpp)
-supple_test(selectors LABEL unit LINKS supple::sparse SOURCES sparse/selectors/selectors_test.cpp)
+supple_test(selectors OPTIMIZED LABEL unit LINKS supple::sparse SOURCES sparse/selectors/selectors_test.cpp)
