@@ -60,6 +60,16 @@ E value_named(std::string_view name, std::string_view what) {
                               listed(all_names_of<E>()));
 }
 
+/// \throws std::invalid_argument unless a user can write the name in a Choice: letters, digits, '-', '_' and '.' only.
+inline void require_name(std::string_view name, const std::string& what) {
+  const auto fits = [](char c) {
+    return ('a' <= c && c <= 'z') || ('A' <= c && c <= 'Z') || ('0' <= c && c <= '9') || c == '-' || c == '_' ||
+           c == '.';
+  };
+  require(!name.empty() && std::ranges::all_of(name, fits),
+          "the name of " + what + " is '" + std::string(name) + "', expected letters, digits, '-', '_' and '.'");
+}
+
 enum class OptionType { WholeNumber, Number, Flag, Word };
 
 /// An option of an entry, as users see it.
@@ -108,8 +118,11 @@ class OptionsOf {
  public:
   explicit OptionsOf(T defaults = {}) : defaults_(std::move(defaults)) {}
 
+  /// \throws std::invalid_argument for a name that cannot be written in a Choice, or that is there already.
   template <typename Member>
   OptionsOf& add(std::string name, Member T::*member, std::string meaning) {
+    require_name(name, "an option");
+    require(std::ranges::find(items_, name, &Item::name) == items_.end(), "there is an option '" + name + "' already");
     OptionInfo info{name, type_of<Member>(), text_of(defaults_.*member), std::move(meaning)};
     items_.push_back({std::move(info), [name, member](T& object, const std::string& text) {
                         object.*member = value_of<Member>(name, text);
@@ -128,10 +141,9 @@ class OptionsOf {
   T make(const OptionValues& values, const std::string& whose) const {
     T result = defaults_;
     for (const auto& [name, text] : values) {
-      const auto found = std::ranges::find(items_, name, [](const Item& item) { return item.info.name; });
+      const auto found = std::ranges::find(items_, name, &Item::name);
       require(found != items_.end(), whose + " has no option '" + name + "', expected " +
-                                         (items_.empty() ? "none" : "one of ") +
-                                         listed(items_, [](const Item& item) { return item.info.name; }));
+                                         (items_.empty() ? "none" : "one of ") + listed(items_, &Item::name));
       try {
         found->set(result, text);
       } catch (const std::invalid_argument& error) {
@@ -145,6 +157,8 @@ class OptionsOf {
   struct Item {
     OptionInfo info;
     std::function<void(T&, const std::string&)> set;
+
+    const std::string& name() const { return info.name; }
   };
 
   template <typename Member>
@@ -211,11 +225,16 @@ class Registry {
 
   const std::string& kind() const { return kind_; }
 
-  /// \throws std::invalid_argument if there is one of this name.
+  /// \throws std::invalid_argument as require_new.
   void add(Entry entry) {
+    require_new(entry.name);
     const std::scoped_lock lock(mutex_);
-    require(!found(entry.name), "there is a " + kind_ + " '" + entry.name + "' already");
     entries_.push_back(std::move(entry));
+  }
+  /// \throws std::invalid_argument if there is one of this name, or if users cannot write it in a Choice.
+  void require_new(std::string_view name) const {
+    require_name(name, "a " + kind_);
+    require(!contains(name), "there is a " + kind_ + " '" + std::string(name) + "' already");
   }
 
   /// \throws std::invalid_argument naming those that there are.

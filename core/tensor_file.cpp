@@ -256,8 +256,8 @@ TensorFile::TensorFile(const std::filesystem::path& path, Checksums checksums)
     const std::optional<std::size_t> count = count_values(shape, *dtype);
     const std::size_t begin = entry["data_offsets"][0], end = entry["data_offsets"][1];
     if (begin > end || end > data.size())
-      refuse_entry("truncated: expected bytes " + std::to_string(begin) + " to " + std::to_string(end) + " of " +
-                   std::to_string(data.size()));
+      refuse("truncated: expected at least " + std::to_string(8 + head_size + end) + " bytes, the file has " +
+             std::to_string(8 + head_size + data.size()));
     if (!count || *count * size_of(*dtype) != end - begin)
       refuse_entry("shape " + to_string(shape) + " does not fit its " + std::to_string(end - begin) + " bytes");
     ranges.push_back({begin, end, name});

@@ -215,6 +215,7 @@ void CompareCommand::declare(CLI::App& app) {
   command.add_option("REFERENCE", reference, "What it is compared with")->required();
   command.add_option("-o,--output", output, "Folder for errors.csv, errors.png and comparison.png")->type_name("DIR");
   declare_json(command, json);
+  declare_plugins(command);
   declare_threads(command, threads);
   command.footer(
       "Frames count at times that both have, up to the end of the shorter one; errors are root mean squares over\n"

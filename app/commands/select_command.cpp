@@ -295,6 +295,7 @@ void SelectCommand::declare(CLI::App& app) {
   declare_matrices(command, *this);
   declare_choice(command, *this);
   declare_json(command, json);
+  declare_plugins(command);
   declare_threads(command, threads);
   command.footer([] {
     return "The indices and weights are in the report of --json. Weights are not negative, but for htp and niht.\n\n" +

@@ -189,6 +189,8 @@ std::string material_help() {
   for (const std::string& name : material_laws()) {
     text += "  " + name + ":";
     for (const std::string& parameter : material_law(name).parameters) text += " " + parameter;
+    if (const std::string& description = material_law(name).description; !description.empty())
+      text += " (" + description + ")";
     text += "\n";
   }
   return text;

@@ -208,8 +208,14 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
         solver->fail(moved, "belongs to the integrator: \"integrator\": {\"method\": \"newmark\", \"" +
                                 std::string(moved) + "\": ...}");
   }
-  if (const auto integrator = file.object_if("integrator"))
+  if (const auto integrator = file.object_if("integrator")) {
     scene.integrator = read_choice(*integrator, "method", integrators());
+    try {
+      check_integrator(*scene.integrator);
+    } catch (const std::invalid_argument& error) {
+      integrator->fail("method", "is refused: " + std::string(error.what()));
+    }
+  }
   if (const auto output = file.object_if("output")) {
     if (output->contains("every")) scene.every = output->integer("every", at_least(1));
     if (output->contains("track"))

@@ -24,10 +24,15 @@ std::vector<double> MaterialLaw::values(const IsotropicModuli& moduli, const Nam
 Registry<MaterialLaw>& material_law_registry() {
   static Registry<MaterialLaw> laws(
       "material law",
-      {make_material_law<StVenantKirchhoff>("stvk"), make_material_law<MooneyRivlin>("mooney-rivlin"),
-       make_material_law<NeoHookean>("neo-hookean"), make_material_law<StableNeoHookean>("stable-neo-hookean"),
-       make_material_law<Corotational>("corotational"), make_material_law<Ogden>("ogden"),
-       make_material_law<Fung>("fung")},
+      {make_material_law<StVenantKirchhoff>("stvk",
+                                            "St. Venant-Kirchhoff: linear in Green's strain; fast, soft when crushed"),
+       make_material_law<MooneyRivlin>("mooney-rivlin", "compressible Mooney-Rivlin, rubber"),
+       make_material_law<NeoHookean>("neo-hookean", "compressible neo-Hookean, resists any crushing"),
+       make_material_law<StableNeoHookean>("stable-neo-hookean",
+                                           "neo-Hookean that bears inversion (Smith et al. 2018)"),
+       make_material_law<Corotational>("corotational", "linear elasticity in rotating frames"),
+       make_material_law<Ogden>("ogden", "powers of principal stretches, rubber and tissue"),
+       make_material_law<Fung>("fung", "exponential stiffening, tissue")},
       ", or the --plugin that has it");
   return laws;
 }

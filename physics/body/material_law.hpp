@@ -23,6 +23,7 @@ struct MaterialLaw {
   using Named = std::map<std::string, double>;
 
   std::string name;
+  std::string description = {};         ///< a few words, for helps
   std::vector<std::string> parameters;  ///< names, in the order of the material's members
   bool finite_when_inverted = true;     ///< whether the energy of an inverted element is finite
 
@@ -114,7 +115,7 @@ auto erased_solid(const Mesh& mesh, const RowMatrix& materials, const std::vecto
 /// `static constexpr std::array parameter_names{"mu", …}`, and how they follow from moduli, `static Material
 /// from(const IsotropicModuli&)`.
 template <template <typename> class Material>
-MaterialLaw make_material_law(std::string name) {
+MaterialLaw make_material_law(std::string name, std::string description = "") {
   constexpr auto& names = Material<double>::parameter_names;
   static_assert(std::size(names) == num_material_parameters<Material>, "parameter_names must name every member");
   const Matrix3<double> inverted = Point(-0.5, 1, 1).asDiagonal();
@@ -126,6 +127,7 @@ MaterialLaw make_material_law(std::string name) {
   };
   return {
       .name = std::move(name),
+      .description = std::move(description),
       .parameters = {names.begin(), names.end()},
       .finite_when_inverted = std::isfinite(Material<double>::from(IsotropicModuli{}).energy(inverted)),
       .from =

@@ -34,6 +34,9 @@ struct NamedIntegrator {
 ///                                                  OptionsOf<MyParameters>().add("theta", &MyParameters::theta, "…")));
 template <template <DynamicalSystem> class Integrator, typename Parameters>
 NamedIntegrator named_integrator(std::string name, std::string description, OptionsOf<Parameters> options) {
+  for (const OptionInfo& option : options.info())
+    require(option.name != "method",
+            "integrator " + name + " has an option 'method', which scenes name integrators by");
   const auto make = [name, options]<typename System>(const System& system, double h, const StepOptions& step,
                                                      const OptionValues& values) {
     const Parameters parameters = options.make(values, "integrator " + name);

@@ -1,4 +1,5 @@
 #include <core/check.hpp>
+#include <core/random.hpp>
 #include <reduction/basis/joined_basis.hpp>
 #include <reduction/basis/modal_derivatives.hpp>
 #include <reduction/basis/pca_basis.hpp>
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 namespace supple {
 
@@ -99,6 +101,30 @@ std::vector<Choice> choices_of(const std::string& name) {
   return parts;
 }
 
+/// \throws SolverError naming the subspace, if its builder did not do what builders promise.
+void require_promises(const std::string& name, const AnyBasis& basis, const RestState& object) {
+  const auto expect = [&](bool holds, const std::string& what) {
+    if (!holds) throw SolverError("subspace '" + name + "' broke its promise: it " + what);
+  };
+  std::visit(
+      [&](const auto& subspace) {
+        expect(subspace->dim() > 0, "has no dimension");
+        expect(subspace->full_dim() == object.node_dim * object.numbering.num_nodes(),
+               "has displacements of another number of nodes");
+        expect(subspace->W.allFinite(), "has entries that are not finite");
+        Random random(1);
+        Vector q(subspace->dim());
+        for (double& value : q) value = random.normal();
+        const Vector u = subspace->reconstruct(q);
+        for (const Index node : object.numbering.fixed_nodes())
+          expect(u.segment(object.node_dim * node, object.node_dim).isZero(0),
+                 "moves node " + std::to_string(node) + ", which is held");
+        const double ratio = std::sqrt(u.cwiseAbs2().dot(object.mass_of_rows())) / q.norm();
+        expect(std::abs(ratio - 1) < 1e-6, "is not orthonormal with respect to the masses");
+      },
+      basis);
+}
+
 }  // namespace
 
 Registry<NamedSubspace>& subspaces() {
@@ -136,7 +162,9 @@ Index skinning_weights(const SubspaceChoice& choice) {
 AnyBasis build_subspace(const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run) {
   const std::vector<Choice> parts = choices_of(choice.name);
   const auto build = [&](const Choice& part) {
-    return subspaces().at(part.name).build(object, choice, part.options, run);
+    AnyBasis basis = subspaces().at(part.name).build(object, choice, part.options, run);
+    require_promises(part.name, basis, object);
+    return basis;
   };
   AnyBasis sum = build(parts.front());
   for (std::size_t k = 1; k < parts.size(); ++k)

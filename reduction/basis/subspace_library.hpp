@@ -80,7 +80,8 @@ void check(const SubspaceChoice& choice);
 /// Number of weights of the skinning modes of a choice.
 Index skinning_weights(const SubspaceChoice& choice);
 
-/// The basis of a choice: of one name, or what several span together, M-orthonormal. \throws as the builders.
+/// The basis of a choice: of one name, or what several span together, M-orthonormal. \throws as the builders;
+/// SolverError for a basis that is none: not finite or orthonormal, or moving nodes that are held.
 AnyBasis build_subspace(const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run = {});
 
 }  // namespace supple

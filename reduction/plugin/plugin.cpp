@@ -1,7 +1,10 @@
 #include <core/check.hpp>
 #include <reduction/plugin/plugin.hpp>
 
+#include <cstdint>
 #include <dlfcn.h>
+#include <elf.h>
+#include <fstream>
 #include <set>
 
 namespace supple {
@@ -16,7 +19,7 @@ class Pending {
 
   void add(Entry entry) {
     for (const Entry& other : entries_) require(other.name != entry.name, "it adds '" + entry.name + "' twice");
-    require(!all_.contains(entry.name), "there is a " + all_.kind() + " '" + entry.name + "' already");
+    all_.require_new(entry.name);
     entries_.push_back(std::move(entry));
   }
   void commit() {
@@ -75,6 +78,17 @@ std::string last_error() {
   return text ? text : "unknown reason";
 }
 
+/// Whether a library ends before its own table of sections does, as a copy that was cut short: loading it would end the
+/// program.
+bool is_cut_short(const std::filesystem::path& file) {
+  Elf64_Ehdr header{};
+  std::ifstream(file, std::ios::binary).read(reinterpret_cast<char*>(&header), sizeof header);
+  if (std::string_view(reinterpret_cast<const char*>(header.e_ident), SELFMAG) != ELFMAG) return false;
+  const std::uintmax_t size = std::filesystem::file_size(file);
+  const std::uintmax_t sections = std::uintmax_t{header.e_shnum} * header.e_shentsize;
+  return size < sizeof header || header.e_shoff > size || sections > size - header.e_shoff;
+}
+
 }  // namespace
 
 void load_plugin(const std::filesystem::path& path) {
@@ -85,6 +99,7 @@ void load_plugin(const std::filesystem::path& path) {
   if (none) throw fail("there is no such file, expected a shared library");
   if (loaded.contains(file)) return;
 
+  if (is_cut_short(file)) throw fail("this library is cut short");
   void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!library) throw fail("this is not a shared library that can be loaded: " + last_error());
   const auto abi = reinterpret_cast<const char* (*)()>(dlsym(library, "supple_plugin_abi"));
@@ -97,6 +112,8 @@ void load_plugin(const std::filesystem::path& path) {
     plugin(collected);
   } catch (const std::exception& error) {
     throw fail(error.what());
+  } catch (...) {
+    throw fail("SUPPLE_PLUGIN threw something that is no std::exception");
   }
   collected.commit();
   loaded.insert(file);

@@ -23,7 +23,8 @@ static_assert(FittingProblem<Fitting>);
 
 /// A selector also promises, and supple::testing checks: at most s indices, ascending, each a candidate or
 /// must-keep; weights > 0 (must-keep: ≥ 0); the residual in the report is that of a direct evaluation; equal
-/// requests give equal bits, whatever the number of threads; std::invalid_argument for a request that makes
+/// requests give equal bits, whatever the number of threads; no larger residual than a warm start that may be kept; with a
+/// target error and no size, fewer columns than all where fewer reach it; std::invalid_argument for a request that makes
 /// no sense, InputError for a column or right-hand side that is not finite.
 template <typename S, typename P>
 concept SubsetSelectorFor = FittingProblem<P> &&

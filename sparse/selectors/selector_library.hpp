@@ -46,18 +46,21 @@ std::vector<std::string> known_selectors();
 class AnySelector {
  public:
   /// \throws std::invalid_argument for a name or an option that is not known, listing those that are.
+  /// Its calls throw SolverError for an answer that is none, such as an index of no column.
   explicit AnySelector(std::string_view choice, std::uint64_t seed = 0);
 
   template <typename P>
   Selection operator()(const P& problem, const SelectionRequest& request) const {
     if constexpr (std::same_as<P, AnyProblem>)
-      return run_(problem, request);
+      return checked(run_(problem, request), problem.cols());
     else
-      return run_(AnyProblem(problem), request);
+      return (*this)(AnyProblem(problem), request);
   }
   const std::string& name() const { return name_; }
 
  private:
+  Selection checked(Selection selection, Index cols) const;
+
   std::string name_;
   NamedSelector::Run run_;
 };

@@ -98,6 +98,8 @@ TEST_F(SimulateCommandTest, NamesIntegratorsAndForcesItDoesNotKnow) {
   expect_refusal({"simulate", "bar.supple", "--integrator", "leapfrog"}, {"--integrator", "leapfrog", "newmark"});
   expect_refusal({"simulate", "bar.supple", "--integrator", "newmark:rho=1"}, {"--integrator", "'rho'"});
   expect_refusal({"simulate", "bar.supple", "--integrator", "generalized-alpha:rho_infinity=7"}, {"0 to 1"});
+  write("late.json", R"({"integrator": {"method": "generalized-alpha", "rho_infinity": 7}})");
+  expect_refusal({"simulate", "bar.supple", "--scene", "late.json"}, {"late.json", "/integrator/method", "0 to 1"});
   const auto refused = [&](const char* scene, const std::vector<std::string>& parts) {
     write("scene.json", scene);
     expect_refusal({"simulate", "bar.supple", "--scene", "scene.json"}, parts);

@@ -105,6 +105,12 @@ TEST(OptionsOf, RefuseWhatTheyDoNotKnow) {
   refused("colour", "blue", HasSubstr("red, green"));
 }
 
+TEST(OptionsOf, RefuseNamesThatNobodyCanWrite) {
+  for (const char* name : {"", "a b", "a:b", "a=b", "a+b", "width"})
+    EXPECT_THAT([&] { brush_options().add(name, &Brush::width, ""); },
+                ThrowsMessage<std::invalid_argument>(HasSubstr("'" + std::string(name) + "'")));
+}
+
 struct Entry {
   std::string name, description;
   std::vector<OptionInfo> options = {};
@@ -124,6 +130,12 @@ TEST(Registry, FindsWhatWasAddedAndKeepsReferences) {
         tools.add({"pen", "again"});
       },
       ThrowsMessage<std::invalid_argument>("there is a tool 'pen' already"));
+  for (const char* name : {"", "a b", "a:b", "a=b", "a+b", "a\n"})
+    EXPECT_THAT(
+        [&] {
+          tools.add({name, "no choice"});
+        },
+        ThrowsMessage<std::invalid_argument>(HasSubstr("expected letters, digits, '-', '_' and '.'")));
   EXPECT_THAT([&] { (void)tools.at("saw"); },
               ThrowsMessage<std::invalid_argument>(
                   AllOf(HasSubstr("tool 'saw' is not known"), HasSubstr("brush, pen"), HasSubstr(", or make one"))));

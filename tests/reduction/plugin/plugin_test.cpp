@@ -68,6 +68,13 @@ TEST(Plugin, IsRefusedWithItsNameAndTheReason) {
   std::ofstream(text) << "not a library";
   refused(text, HasSubstr("not a shared library"));
   std::filesystem::remove(text);
+  const auto part = std::filesystem::temp_directory_path() / "supple_cut_short.so";
+  std::filesystem::copy_file(folder / "libgent_plugin.so", part, std::filesystem::copy_options::overwrite_existing);
+  for (const std::uintmax_t size : {std::filesystem::file_size(part) / 2, std::uintmax_t{100}, std::uintmax_t{20}}) {
+    std::filesystem::resize_file(part, size);
+    refused(part, HasSubstr("cut short"));
+  }
+  std::filesystem::remove(part);
 }
 
 TEST(Plugin, ThatFailsHalfWayLeavesNothing) {

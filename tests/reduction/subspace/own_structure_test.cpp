@@ -81,5 +81,34 @@ TEST(SubspaceLibrary, TakesABuilderOfOnesOwnWithItsOptions) {
               testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("'modal' already")));
 }
 
+/// Breaks one promise after the other.
+struct Careless {
+  enum class Way { Empty, NotFinite, Loose, TooLong };
+  Way way;
+  DenseBasis operator()(const RestState& object) const {
+    DenseBasis basis = Constants{}(object);
+    if (way == Way::Empty) basis.W.resize(basis.W.rows(), 0);
+    if (way == Way::NotFinite)
+      basis.W(3 * object.numbering.free_nodes()[0], 0) = std::numeric_limits<double>::infinity();
+    if (way == Way::Loose) basis.W(3 * object.numbering.fixed_nodes()[0], 0) = 1;
+    if (way == Way::TooLong) basis.W *= 1.001;
+    return basis;
+  }
+};
+
+TEST(SubspaceLibrary, RefusesABasisThatIsNone) {
+  const StvkBar bar = clamped_bar();
+  const auto refused = [&](Careless::Way way, const char* name, const char* reason) {
+    subspaces().add(named_subspace(name, "", OptionsOf(Careless{way})));
+    EXPECT_THAT(
+        [&] { (void)build_subspace(bar.rest_state(), {.name = name}); },
+        testing::ThrowsMessage<SolverError>(testing::AllOf(testing::HasSubstr(name), testing::HasSubstr(reason))));
+  };
+  refused(Careless::Way::Empty, "empty", "no dimension");
+  refused(Careless::Way::NotFinite, "not-finite", "not finite");
+  refused(Careless::Way::Loose, "loose", "which is held");
+  refused(Careless::Way::TooLong, "too-long", "not orthonormal");
+}
+
 }  // namespace
 }  // namespace supple::test

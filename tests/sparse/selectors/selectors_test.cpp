@@ -2,7 +2,7 @@
 #include <testing/subset_selector_conformance.hpp>
 #include <tests/sparse/problems.hpp>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace supple {
 namespace {
@@ -252,6 +252,29 @@ TEST(SelectByName, DoesTheSameOnATypeErasedProblem) {
   }
   const GreedyCubature greedy{.subset_groups = 5};
   EXPECT_EQ(greedy(AnyProblem(cube()), 10).indices, greedy(cube(), 10).indices);
+}
+
+TEST(SelectByName, RefusesAnAnswerThatIsNone) {
+  struct Answer {
+    Selection answer;
+    Selection operator()(const AnyProblem&, const SelectionRequest&) const { return answer; }
+  };
+  const auto refused = [](const char* name, std::vector<Index> indices, Vector weights, const char* reason) {
+    selectors().add({name,
+                     "",
+                     {},
+                     [answer = Selection{std::move(indices), std::move(weights), {}}](
+                         const OptionValues&, std::uint64_t) -> NamedSelector::Run { return Answer{answer}; }});
+    EXPECT_THAT(
+        [&] { (void)AnySelector(name)(cube(), 10); },
+        testing::ThrowsMessage<SolverError>(testing::AllOf(testing::HasSubstr(name), testing::HasSubstr(reason))));
+  };
+  refused("beyond", {1, 1000000}, Vector::Ones(2), "column 1000000");
+  refused("negative-index", {-1}, Vector::Ones(1), "column -1");
+  refused("too-many-weights", {1, 2}, Vector::Ones(5), "5 weights for 2 columns");
+  refused("unsorted", {5, 1}, Vector::Ones(2), "do not ascend");
+  refused("twice", {1, 1}, Vector::Ones(2), "do not ascend");
+  refused("not-finite", {1}, Vector::Constant(1, NAN), "not finite");
 }
 
 // Only what the concept asks for: no blocks, no full gradient, no groups.
