@@ -2,7 +2,7 @@ cmake_minimum_required(VERSION 3.25)
 # Code that tutorials show is code that the examples run: every ```cpp block of DOCS stands, word for word, in a file of
 # EXAMPLES. Arguments: ROOT, DOCS (names in docs/, separated by commas).
 string(REPLACE "," ";" DOCS ${DOCS})
-file(GLOB examples ${ROOT}/examples/*.hpp ${ROOT}/examples/*.cpp)
+file(GLOB examples ${ROOT}/examples/*.hpp ${ROOT}/examples/*.cpp ${ROOT}/examples/plugin/*.cpp)
 set(code "")
 foreach(example ${examples})
   file(READ ${example} text)

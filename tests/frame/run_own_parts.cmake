@@ -22,7 +22,7 @@ endif()
 # a plug-in with one of each kind, in the installed command
 if(EXISTS ${PREFIX}/bin/supple)
   set(supple ${PREFIX}/bin/supple)
-  set(plugin --plugin ${WORK}/build/liball_six_plugin.so)
+  set(plugin --plugin ${WORK}/build/mine/libmine.so)
   run(${supple} reduce bar:8x2x2 --fix x<=0 ${plugin} --material gent --parameter limit=5 --subspace polynomials:degree=2
       --selector batched-omp:batch=5 --poses 20 --points 30 --held-out 10 -o six.supple --json six.json)
   file(READ ${WORK}/six.json report)
@@ -39,7 +39,8 @@ if(EXISTS ${PREFIX}/bin/supple)
   if(place EQUAL -1)
     message(FATAL_ERROR "the report of simulate does not tell of the integrator:\n${report}")
   endif()
-  run(${supple} simulate six.supple ${plugin} --full --time 0.02)
+  run(${supple} simulate six.supple ${plugin} --scene windy.json --integrator midpoint --full -o full)
+  run(${supple} compare windy full ${plugin})
   run(${supple} reduce bar:8x2x2 --fix x<=0 ${plugin} --material spring-tets --modes 4 --poses 20 --points 30
       --held-out 10 -o springs.supple)
   # help tells of them, with their options

@@ -3,7 +3,7 @@ add_test(NAME frame.includes_run_downward
 set_tests_properties(frame.includes_run_downward PROPERTIES LABELS unit)
 
 add_test(NAME frame.tutorials_show_code_that_runs
-  COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DDOCS=materials.md,elements.md,selectors.md,subspaces.md,integrators.md,loads.md
+  COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DDOCS=materials.md,elements.md,selectors.md,subspaces.md,integrators.md,loads.md,plugins.md
           -P ${CMAKE_CURRENT_LIST_DIR}/check_docs.cmake)
 set_tests_properties(frame.tutorials_show_code_that_runs PROPERTIES LABELS unit)
 

@@ -1,4 +1,4 @@
-// One of each kind that commands know by name, all from outside the tree.
+// One of each kind that commands know by name, all from outside the tree: docs/plugins.md.
 #include <reduction/plugin/plugin.hpp>
 
 #include <batched_omp.hpp>
