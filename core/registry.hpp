@@ -11,7 +11,6 @@
 #include <deque>
 #include <functional>
 #include <mutex>
-#include <ranges>
 #include <string>
 #include <string_view>
 #include <utility>
