@@ -226,14 +226,14 @@ class Registry {
 
   /// \throws std::invalid_argument as require_new.
   void add(Entry entry) {
-    require_new(entry.name);
     const std::scoped_lock lock(mutex_);
+    require_absent(entry.name);
     entries_.push_back(std::move(entry));
   }
   /// \throws std::invalid_argument if there is one of this name, or if users cannot write it in a Choice.
   void require_new(std::string_view name) const {
-    require_name(name, "a " + kind_);
-    require(!contains(name), "there is a " + kind_ + " '" + std::string(name) + "' already");
+    const std::scoped_lock lock(mutex_);
+    require_absent(name);
   }
 
   /// \throws std::invalid_argument naming those that there are.
@@ -256,6 +256,10 @@ class Registry {
   }
 
  private:
+  void require_absent(std::string_view name) const {
+    require_name(name, "a " + kind_);
+    require(!found(name), "there is a " + kind_ + " '" + std::string(name) + "' already");
+  }
   const Entry* found(std::string_view name) const {
     for (const Entry& entry : entries_)
       if (entry.name == name) return &entry;
