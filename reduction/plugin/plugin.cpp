@@ -83,7 +83,9 @@ std::string last_error() {
 bool is_cut_short(const std::filesystem::path& file) {
   Elf64_Ehdr header{};
   std::ifstream(file, std::ios::binary).read(reinterpret_cast<char*>(&header), sizeof header);
-  if (std::string_view(reinterpret_cast<const char*>(header.e_ident), SELFMAG) != ELFMAG) return false;
+  if (std::string_view(reinterpret_cast<const char*>(header.e_ident), SELFMAG) != ELFMAG ||
+      header.e_ident[EI_CLASS] != ELFCLASS64)
+    return false;  // for the loader to say
   const std::uintmax_t size = std::filesystem::file_size(file);
   const std::uintmax_t sections = std::uintmax_t{header.e_shnum} * header.e_shentsize;
   return size < sizeof header || header.e_shoff > size || sections > size - header.e_shoff;
