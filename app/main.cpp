@@ -98,5 +98,5 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   supple::watch_for_signals();
-  return run(argc, argv);
+  return supple::exit_code(run(argc, argv));
 }

@@ -2,6 +2,7 @@
 #include <app/report/terminal.hpp>
 #include <core/output_file.hpp>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <fcntl.h>
@@ -17,10 +18,12 @@ std::recursive_mutex& files() {
   return *mutex;
 }
 
+std::atomic<int> last_signal = 0;
 int caught[2];  // a pipe from the handler, in which hardly anything is allowed, to the thread
 
 void pass_on(int signal) {
   const int error = errno;
+  last_signal = signal;
   const auto number = static_cast<unsigned char>(signal);
   [[maybe_unused]] const ssize_t written = ::write(caught[1], &number, 1);
   errno = error;
@@ -47,6 +50,10 @@ void watch_for_signals() {
     if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler == SIG_IGN) continue;  // as under nohup
     sigaction(signal, &handler, nullptr);
   }
+}
+
+int exit_code(int code) {
+  return last_signal == 0 ? code : 128 + last_signal;
 }
 
 ExitGuard::ExitGuard() : lock_(files()) {}

@@ -10,6 +10,10 @@ namespace supple {
 /// lives, whatever thread they reach: libraries may have started some before main().
 void watch_for_signals();
 
+/// What the process ends with where it would have ended with `code` by itself: 128 + the signal that came before, whose
+/// thread may still be waiting for its turn.
+int exit_code(int code);
+
 /// While one lives, signals wait: hold it from opening a file to its last byte.
 class [[nodiscard]] ExitGuard {
  public:

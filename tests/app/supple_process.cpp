@@ -23,10 +23,10 @@ std::string drain(int descriptor) {
   return text;
 }
 
-/// \param wait  called before the signal is sent.
+/// \param wait  called with the process's number before the signal is sent.
 /// \param device  that stdout goes to; null: into the outcome.
 Outcome run(const Arguments& arguments, const std::filesystem::path& folder, bool terminal, int signal = 0,
-            const std::function<void()>& wait = {}, const char* device = nullptr) {
+            const std::function<void(pid_t)>& wait = {}, const char* device = nullptr) {
   int out[2], err[2];
   if (pipe(out) != 0) throw std::runtime_error("no pipe");
   if (terminal) {
@@ -54,8 +54,9 @@ Outcome run(const Arguments& arguments, const std::filesystem::path& folder, boo
   Outcome outcome;
   std::thread reader([&] { outcome.err = drain(err[0]); });
   if (signal != 0) {
-    wait();
+    wait(child);
     kill(child, signal);
+    kill(child, SIGCONT);
   }
   outcome.out = drain(out[0]);
   int status = 0;
@@ -79,7 +80,7 @@ Outcome run_supple_on_full_disk(const Arguments& arguments, const std::filesyste
 Outcome run_supple_until_signal(const Arguments& arguments, const std::filesystem::path& folder, int signal,
                                 int milliseconds) {
   return run(arguments, folder, false, signal,
-             [&] { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); });
+             [&](pid_t) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); });
 }
 Outcome run_supple_until_signal_while_writing(const Arguments& arguments, const std::filesystem::path& folder,
                                               int signal) {
@@ -89,9 +90,16 @@ Outcome run_supple_until_signal_while_writing(const Arguments& arguments, const 
     return false;
   };
   const auto start = std::chrono::steady_clock::now();
-  return run(arguments, folder, false, signal, [&] {
-    while (!is_writing() && std::chrono::steady_clock::now() - start < std::chrono::seconds(60))
+  return run(arguments, folder, false, signal, [&](pid_t child) {
+    while (std::chrono::steady_clock::now() - start < std::chrono::seconds(60)) {
+      if (is_writing()) {  // held there, however long this process waits for its turn
+        kill(child, SIGSTOP);
+        waitpid(child, nullptr, WUNTRACED);
+        if (is_writing()) return;
+        kill(child, SIGCONT);
+      }
       std::this_thread::yield();
+    }
   });
 }
 
