@@ -1,6 +1,5 @@
 #include <tests/io/mesh_files.hpp>
 
-#include <gtest/gtest.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -400,15 +399,6 @@ std::vector<MeshFile> in_every_format(const HexMesh& mesh) {
 }
 std::vector<MeshFile> in_every_format(const QuadraticTetMesh& mesh) {
   return every_format(mesh);
-}
-
-std::filesystem::path test_folder() {
-  const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-  std::string name = std::string("supple_") + test.test_suite_name() + "_" + test.name();
-  std::replace(name.begin(), name.end(), '/', '_');
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
-  std::filesystem::create_directories(path);
-  return path;
 }
 
 std::filesystem::path write(const std::string& bytes, const std::filesystem::path& path) {

@@ -3,6 +3,7 @@
 /// code with the readers.
 
 #include <physics/mesh/cell_mesh.hpp>
+#include <tests/support/test_folder.hpp>
 
 #include <filesystem>
 #include <ostream>
@@ -28,9 +29,6 @@ inline void PrintTo(const MeshFile& file, std::ostream* out) {
 std::vector<MeshFile> in_every_format(const TetMesh& mesh);
 std::vector<MeshFile> in_every_format(const HexMesh& mesh);
 std::vector<MeshFile> in_every_format(const QuadraticTetMesh& mesh);
-
-/// A folder for the files of the running test, its own even when tests run side by side.
-std::filesystem::path test_folder();
 
 /// Writes the file into a folder. \return its path.
 std::filesystem::path write(const MeshFile& file, const std::filesystem::path& folder);

@@ -8,6 +8,7 @@
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
 #include <tests/support/bars.hpp>
+#include <tests/support/test_folder.hpp>
 
 #include <gmock/gmock.h>
 
@@ -268,10 +269,7 @@ struct ModelFile : testing::Test {
     return "no exception";
   }
 
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() /
-      (std::string("supple_") + testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
-       std::to_string(std::hash<std::string>{}(std::filesystem::current_path().string())));
+  const std::filesystem::path folder = test_folder();
   const std::filesystem::path path = folder / "bar.supple";
 };
 
@@ -399,7 +397,7 @@ TEST(Reduce, ReducesAShellAndKeepsIt) {
   const ReducedModel model = reduce(shell, options, &report);
   EXPECT_EQ(report.components, static_cast<Index>(interior_edges(mesh).size()));
   EXPECT_LT(report.training_error, 0.3);
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "supple_shell.supple";
+  const std::filesystem::path path = test_folder() / "shell.supple";
   save_model(path, model);
   const ReducedModel loaded = load_model(path);
   const Shell& kept = std::get<Shell>(loaded.body);
@@ -438,7 +436,7 @@ TEST(Reduce, CountsTheMotionsOfAHingeWithoutEnergy) {
       EXPECT_GT(softest, 1e3 * std::pow(modes.omega[0], 2));
       EXPECT_LT(report.training_error, 0.3);
       EXPECT_LT(report.held_out_error, 0.3);
-      const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "supple_hinge.supple";
+      const std::filesystem::path path = test_folder() / "hinge.supple";
       save_model(path, model);
       EXPECT_EQ(reduced_modes(load_model(path)).num_zero, 1);
     }
@@ -465,7 +463,7 @@ void expect_kept(const Mesh& mesh, const char* array) {
     const Index per_cell = component == SolidComponent::Element ? 1 : static_cast<Index>(Element::gauss_points.size());
     EXPECT_EQ(report.components, per_cell * mesh.num_cells());
     EXPECT_LT(report.training_error, 0.4);
-    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "supple_cells.supple";
+    const std::filesystem::path path = test_folder() / "cells.supple";
     save_model(path, model);
     EXPECT_TRUE(TensorFile(path).contains(array));
     const ReducedModel loaded = load_model(path);
