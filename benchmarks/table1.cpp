@@ -57,7 +57,7 @@ json numbers(const PulledMotion& motion) {
 
 int main(int argc, char** argv) {
   CLI::App cli("Table 1 for one object");
-  std::string mesh_name, recipe = "default", law = "stvk", subspace = "extended", selector;
+  std::string mesh_name, recipe = "subspace", law = "stvk", subspace = "extended", selector;
   std::vector<std::string> fix;
   Index modes = 15, points = 150, poses = 0;
   double target = 0.25, amplitude = 0;
@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
   bool trajectories = true;
   cli.add_option("mesh", mesh_name, "file or built-in")->required();
   cli.add_option("--fix", fix);
-  cli.add_option("--recipe", recipe)->check(CLI::IsMember({"default", "paper"}));
+  cli.add_option("--recipe", recipe)->check(CLI::IsMember({"subspace", "paper"}));
   cli.add_option("--law", law);
   cli.add_option("--subspace", subspace);
   cli.add_option("--selector", selector);

@@ -66,7 +66,7 @@ std::string description(const CompareSelectorsCommand& command, const ReduceOpti
       shown_count(report.components) + " " + std::string(component_name(body)) + " (" + std::string(law(body)) +
       "), subspace of dimension " + std::to_string(report.dimension) + ", " + std::to_string(report.poses) +
       " training poses" + (equilibria > 0 ? " and " + std::to_string(equilibria) + " equilibria" : "") + " by the " +
-      command.recipe + " recipe, errors in the " + (options.norm == ForceNorm::Mass ? "mass" : "stiffness") +
+      recipe_of(command) + " recipe, errors in the " + (options.norm == ForceNorm::Mass ? "mass" : "stiffness") +
       " norm, " + std::to_string(command.runs) + (command.runs == 1 ? " seed" : " seeds") + ".";
   if (!study.scenes().empty()) text += " Pulls reach";
   for (std::size_t k = 0; k < study.scenes().size(); ++k)

@@ -183,9 +183,39 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
       named.mesh);
 }
 
+std::string recipe_of(const ProblemOptions& problem) {
+  if (problem.recipe != "default") return problem.recipe;
+  const bool has_own_poses = problem.poses_file || problem.snapshots;
+  return problem.relaxes && !has_own_poses && problem.equilibria != 0 ? "relaxed" : "subspace";
+}
+
+namespace {
+
+/// Modal derivatives, if no other subspace is asked for, with weights fitted to the full object.
+ReduceOptions relaxed_options(const ProblemOptions& problem) {
+  ReduceOptions options = ReduceOptions::relaxed_derivatives(problem.modes.value_or(20));
+  if (problem.subspace) {
+    const ReduceOptions plain;
+    options.subspace = *problem.subspace;
+    options.modes = plain.modes;
+    options.points = plain.points;
+  } else if (problem.dimension) {
+    options.subspace = "derivatives";
+  }
+  // how far the object is to move: what relaxes there are the equilibria
+  if (!problem.amplitudes.empty()) options.equilibrium_amplitudes = problem.amplitudes;
+  return options;
+}
+
+}  // namespace
+
 ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named, const Body& body) {
-  ReduceOptions options = problem.recipe == "paper" ? ReduceOptions::paper() : ReduceOptions{};
-  options.subspace = problem.subspace;
+  const std::string recipe = recipe_of(problem);
+  const bool relaxed = recipe == "relaxed";
+  ReduceOptions options = relaxed             ? relaxed_options(problem)
+                          : recipe == "paper" ? ReduceOptions::paper()
+                                              : ReduceOptions{};
+  if (problem.subspace) options.subspace = *problem.subspace;
   if (problem.dimension) options.dimension = *problem.dimension;
   if (problem.snapshots) options.snapshots = read_poses(*problem.snapshots, named.nodes());
   const std::vector<std::string> parts = parts_of_subspace(options.subspace);
@@ -198,7 +228,8 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
   if (problem.held_out) options.held_out_poses = *problem.held_out;
   if (problem.equilibria) options.equilibria = *problem.equilibria;
   if (problem.omega_exponent) options.poses.omega_exponent = *problem.omega_exponent;
-  if (!problem.amplitudes.empty()) options.poses.amplitudes = problem.amplitudes;
+  if (!problem.amplitudes.empty() && !relaxed) options.poses.amplitudes = problem.amplitudes;
+  if (problem.full_loads) options.full_loads = *problem.full_loads;
   if (problem.norm) options.norm = value_named<ForceNorm>(*problem.norm, "norm");
   options.poses.inverted = inverted_rule(
       law(body),
@@ -222,7 +253,7 @@ Index num_components_to_weight(const Body& body, const ReduceOptions& options) {
 }
 
 Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, const Body& body) {
-  Json json{{"recipe", problem.recipe},
+  Json json{{"recipe", recipe_of(problem)},
             {"subspace", options.subspace},
             {"modes", options.modes},
             {"dimension", options.dimension},
@@ -233,6 +264,8 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, c
             {"inverted", name_of(*options.poses.inverted)},
             {"held_out", options.held_out_poses},
             {"equilibria", num_equilibria(body, options)},
+            {"relaxed", options.relaxed},
+            {"full_loads", options.full_loads},
             {"seed", options.seed},
             {"material", law(body)},
             {"components", problem.components},
@@ -248,6 +281,7 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, c
     for (const std::filesystem::path& file : files) json[key].push_back(file.string());
   };
   add_files("fix_file", problem.fix_file);
+  if (!options.equilibrium_amplitudes.empty()) json["equilibrium_amplitudes"] = options.equilibrium_amplitudes;
   if (!problem.parameters.empty()) json["parameters"] = problem.parameters;
   if (problem.thickness) json["thickness"] = *problem.thickness;
   if (problem.materials) json["materials"] = problem.materials->string();

@@ -26,8 +26,10 @@ struct ProblemOptions {
   std::vector<std::string> fix, fix_box, fix_region;
   std::vector<std::filesystem::path> fix_file;
 
-  std::string recipe = "default", subspace = "extended";
-  std::optional<Index> modes, dimension, poses, held_out, equilibria;
+  std::string recipe = "default";  ///< see recipe_of()
+  bool relaxes = false;            ///< whether the default recipe may be "relaxed"
+  std::optional<std::string> subspace;
+  std::optional<Index> modes, dimension, poses, held_out, equilibria, full_loads;
   std::optional<std::filesystem::path> snapshots;  ///< for the subspace "pca"
   std::optional<double> omega_exponent;
   std::vector<double> amplitudes;
@@ -38,6 +40,8 @@ struct ProblemOptions {
 
 /// The mesh with the materials, damping and held nodes of the options.
 Body load_body(const ProblemOptions& problem, const NamedMesh& named);
+/// The recipe by name, "relaxed", "subspace" or "paper": that of the options, or else the best that the command has.
+std::string recipe_of(const ProblemOptions& problem);
 /// The recipe with what the options change; selector and size are left to the command.
 /// \param named  the object's mesh, which a file of poses must fit.
 ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named, const Body& body);

@@ -46,6 +46,7 @@ ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const
     options.target_error = *command.target_error;
     options.points = largest_search;
   }
+  if (!command.full_loads) options.full_loads = 8;
   if (command.points) options.points = *command.points;
   if (command.selector) options.selector = *command.selector;
   const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
@@ -61,7 +62,7 @@ ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const
                        std::to_string(*command.points));
     options.points = all;
   }
-  if (static_cast<Index>(options.must_keep.size()) > options.points)
+  if (options.points > 0 && static_cast<Index>(options.must_keep.size()) > options.points)
     throw InputError(command.must_keep.string() + ": names " + std::to_string(options.must_keep.size()) +
                      " components, expected at most --points " + std::to_string(options.points));
   return options;
@@ -98,6 +99,14 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   json["mesh"][json_key(cell_name(model.body))] = num_cells(model.body);
   json["dimension"] = report.dimension;
   json["points"] = report.points;
+  const FullError& full = report.full_error;
+  json["full_error"] = {{"total", full.total},
+                        {"outside_subspace", full.outside},
+                        {"inside_subspace", full.inside},
+                        {"worst", full.worst},
+                        {"loads", full.loads},
+                        {"halved", full.halved},
+                        {"unfinished", full.unfinished}};
   json["training_error"] = report.training_error;
   json["held_out_error"] = report.held_out_error;
   json["equilibrium_error"] = report.equilibrium_error;
@@ -194,14 +203,22 @@ void print_summary(const ReduceCommand& command, const ReducedModel& model, cons
             {"subspace", "dimension " + std::to_string(report.dimension) + " from " +
                              std::to_string(report.omega.size()) + " modes" +
                              (report.rigid_modes > 0 ? " (" + std::to_string(report.rigid_modes) + " rigid)" : "")},
-            {"points", std::to_string(report.points) + " " + kind},
-            {"training error", shown_percent(report.training_error)}};
+            {"points", std::to_string(report.points) + " " + kind}};
+  const FullError& full = report.full_error;
+  if (full.loads > 0) {
+    rows.emplace_back("full object", "equilibria " + shown_percent(full.total) + " off, rms of " +
+                                         std::to_string(full.loads) + " fresh loads (worst " +
+                                         shown_percent(full.worst) + ")");
+    rows.emplace_back(
+        "", shown_percent(full.outside) + " outside of the subspace, " + shown_percent(full.inside) + " in it");
+  }
+  rows.emplace_back("training error", shown_percent(report.training_error));
   std::string held_out;
   for (const auto& [share, error] : report.held_out)
     held_out += (held_out.empty() ? "" : ", ") + shown_percent(error) +
                 (share < 1 ? " at " + shown(share) + " of the amplitude" : "");
   if (std::isfinite(report.equilibrium_error))
-    rows.emplace_back("equilibria", "displaced by " + shown_percent(report.equilibrium_error));
+    rows.emplace_back("equilibria in training", "displaced by " + shown_percent(report.equilibrium_error));
   rows.emplace_back("held-out error", held_out.empty() ? "not measured" : held_out);
   if (report.exact_eigenvalues.size() > 0)
     rows.emplace_back("softest eigenvalue",
@@ -233,6 +250,7 @@ void ReduceCommand::run() const {
                        {"mesh", mesh},
                        {"seed", std::to_string(options.seed)},
                        {"options", options_json(*this, options, body).dump()},
+                       {"full_error", exact(report.full_error.total)},
                        {"training_error", exact(report.training_error)},
                        {"held_out_error", exact(report.held_out_error)}};
   for (const std::string& note : report.notes) warn(note);
@@ -281,9 +299,18 @@ void ReduceCommand::declare(CLI::App& app) {
       ->group(files);
 
   command
-      .add_option("--points", points, "Largest number of components that stand for all [150; 1000 with --target-error]")
+      .add_option("--points", points,
+                  "Largest number of components that stand for all [150; relaxed: four thirds of the dimension, "
+                  "surfaces: eight; "
+                  "1000 with --target-error]")
       ->type_name("S")
       ->check(whole_number())
+      ->group(method_group);
+  command
+      .add_option("--full-loads", full_loads,
+                  "Fresh loads under which equilibria are compared with those of the full object; 0: none [8]")
+      ->type_name("N")
+      ->check(whole_number(0))
       ->group(method_group);
   command.add_option("--target-error", target_error, "Take as few components as reach this training error")
       ->type_name("SHARE")

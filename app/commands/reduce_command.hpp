@@ -11,6 +11,8 @@ namespace supple {
 
 /// `supple reduce`.
 struct ReduceCommand : ProblemOptions {
+  ReduceCommand() { relaxes = true; }
+
   std::filesystem::path model;
 
   std::optional<Index> points;

@@ -120,7 +120,8 @@ void declare_problem(CLI::App& command, ProblemOptions& problem) {
       ->group(method_group);
   command
       .add_option("--modes", problem.modes,
-                  "Vibration modes, rigid ones included [15]; those that derivatives are taken of: flexible ones")
+                  "Vibration modes, rigid ones included [15]; those that derivatives are taken of: flexible ones [15; "
+                  "relaxed: 20]")
       ->type_name("R")
       ->check(whole_number())
       ->group(method_group);
@@ -128,26 +129,29 @@ void declare_problem(CLI::App& command, ProblemOptions& problem) {
 }
 
 void declare_training(CLI::App& command, ProblemOptions& problem) {
-  command.add_option("--recipe", problem.recipe, "Where unset options come from: default, or paper")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"default", "paper"}))
+  command
+      .add_option("--recipe", problem.recipe,
+                  std::string("Where unset options come from: relaxed (fitted to the full object), subspace (to all "
+                              "components in the subspace), or paper ") +
+                      (problem.relaxes ? "[relaxed; poses or snapshots of one's own: subspace]" : "[subspace]"))
+      ->check(CLI::IsMember({"default", "relaxed", "subspace", "paper"}))
       ->group(method_group);
   command
       .add_option(
           "--subspace", problem.subspace,
           "extended (modes under all linear maps), modal (modes alone), derivatives (modal derivatives), skinning "
-          "(skinning eigenmodes), pca (of --snapshots), or several, as in extended+pca: what they span together")
-      ->capture_default_str()
+          "(skinning eigenmodes), pca (of --snapshots), or several, as in extended+pca: what they span together "
+          "[extended; relaxed: derivatives]")
       ->type_name("NAME[:OPTION=VALUE...]")
       ->check(subspace_name())
       ->group(method_group);
-  command.add_option("--poses", problem.poses, "Training poses [300; paper: 1000]")
+  command.add_option("--poses", problem.poses, "Training poses [300; relaxed: 100; paper: 1000]")
       ->type_name("T")
       ->group(method_group);
   command
       .add_option("--amplitude", problem.amplitudes,
                   "Rms displacement of a pose as a share of the diagonal; repeat for a mix [0.05, 0.017, "
-                  "0.005; paper: 0.07]")
+                  "0.005; paper: 0.07]; relaxed: that of the equilibria [0.12, 0.06, 0.03]")
       ->type_name("SHARE")
       ->expected(1)
       ->take_all()
@@ -173,7 +177,7 @@ void declare_training(CLI::App& command, ProblemOptions& problem) {
   command
       .add_option("--equilibria", problem.equilibria,
                   "Further poses, in equilibrium, where errors count as displacements [a third of the poses; free "
-                  "shells, paper: 0]")
+                  "shells, paper: 0; relaxed: 48]")
       ->check(whole_number(0))
       ->type_name("N")
       ->group(method_group);

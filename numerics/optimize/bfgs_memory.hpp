@@ -33,15 +33,25 @@ class BfgsMemory {
   /// H⁻¹ g by the two-loop recursion (Nocedal 1980); H₀ is what the solver holds.
   template <typename Solver>
   Vector inverse_times(const Solver& solver, Vector g) const {
+    const std::vector<double> a = first_loop(g);
+    Vector d = solver.solve(g);
+    second_loop(a, d);
+    return d;
+  }
+
+  /// The recursion in two parts, for many gradients whose products with H₀⁻¹ are formed at once: g becomes what H₀⁻¹ is
+  /// applied to, which second_loop() then makes H⁻¹ g of.
+  std::vector<double> first_loop(Vector& g) const {
     std::vector<double> a(pairs_.size());
     for (std::size_t k = pairs_.size(); k-- > 0;) {
       a[k] = pairs_[k].inverse_curvature * pairs_[k].s.dot(g);
       g -= a[k] * pairs_[k].y;
     }
-    Vector d = solver.solve(g);
+    return a;
+  }
+  void second_loop(const std::vector<double>& a, Vector& d) const {
     for (std::size_t k = 0; k < pairs_.size(); ++k)
       d += (a[k] - pairs_[k].inverse_curvature * pairs_[k].y.dot(d)) * pairs_[k].s;
-    return d;
   }
 
  private:

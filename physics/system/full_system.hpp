@@ -7,10 +7,13 @@
 #include <physics/model/explain_force_model.hpp>
 #include <physics/model/term_pack.hpp>
 #include <physics/system/dynamical_system.hpp>
+#include <physics/system/nodal_frames.hpp>
 #include <physics/system/node_numbering.hpp>
 #include <physics/system/outside_terms.hpp>
 #include <physics/system/rest_state.hpp>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -127,6 +130,15 @@ class FullSystem {
     });
   }
 
+  /// Forces in many states, a column each, dim × k. Eight states at a time go through a component together, whose numbers
+  /// are read once: for eight and more, in a fraction of the time of one by one. Equal bits for any num_threads().
+  void forces(MatrixIn U, MatrixOut F) const { evaluate<false>(U, F, nullptr); }
+  /// And energies, k [J].
+  void forces(MatrixIn U, MatrixOut F, VectorOut energies) const requires PotentialModel<Model> {
+    require_size("energies", energies.size(), U.cols());
+    evaluate<true>(U, F, energies.data());
+  }
+
   /// K becomes the tangent stiffness; its pattern, the same at every call, is set up when K does not have it
   /// yet.
   void stiffness(VectorIn u, SparseMatrix& K) const {
@@ -160,6 +172,15 @@ class FullSystem {
   }
   const SparseMatrix& rest_stiffness() const { return rest_stiffness_; }
 
+  /// How the neighbourhood of each free node has turned since rest, in each of k states, dim × k. The tangent at u is near
+  /// R K(0) Rᵀ, which makes the factor of K(0) a good preconditioner in large deformations (stiffness warping, Müller et al.
+  /// 2002).
+  std::vector<BlockRotations> frames(MatrixIn U) const requires requires(const Model& model) { model.rest_positions(); }
+  {
+    return nodal_frames(model_->rest_positions(), rest_state().expand(U), stencils_, Model::stencil_size, incidence_,
+                        numbering_);
+  }
+
   /// What subspaces are made from. Refers to this system.
   RestState rest_state() const {
     static const Points unknown(0, 3);
@@ -167,7 +188,7 @@ class FullSystem {
     if constexpr (requires { model_->rest_positions(); }) positions = &model_->rest_positions();
     return {rest_stiffness_,     mass_,      nodal_mass_,
             *positions,          numbering_, stencils_,
-            Model::stencil_size, node_dim,   [this](VectorIn u, VectorOut f) { force(u, f); }};
+            Model::stencil_size, node_dim,   [this](MatrixIn U, MatrixOut F) { forces(U, F); }};
   }
   operator RestState() const { return rest_state(); }
 
@@ -216,6 +237,63 @@ class FullSystem {
     const Index end = std::min<Index>(packs_.size(), (chunk + 1) * packs_per_chunk);
     for (Index p = chunk * packs_per_chunk; p < end; ++p)
       body(p, static_cast<int>(std::min<Index>(Pack::size, model_->num_components() - p * Pack::size)));
+  }
+
+  template <bool with_energies>
+  void evaluate(MatrixIn U, MatrixOut F, double* energies) const {
+    require_size("U.rows()", U.rows(), dim());
+    require_size("F.rows()", F.rows(), dim());
+    require_size("F.cols()", F.cols(), U.cols());
+    constexpr Index pieces = 2;  // sums that are kept apart, whatever the number of threads
+    const Index m = model_->num_components(), unknowns = num_nodes() * node_dim;
+    static thread_local std::vector<Pack> buffer;  // of a calling thread, kept: see full_force()
+    buffer.resize((1 + pieces) * unknowns);
+    Pack* const u = buffer.data();
+    const auto sums = [&](Index piece) { return u + (1 + piece) * unknowns; };
+    for (Index first = 0; first < U.cols(); first += Pack::size) {
+      const Index count = std::min<Index>(Pack::size, U.cols() - first);
+      for (const Index v : numbering_.fixed_nodes()) std::fill_n(u + v * node_dim, node_dim, Pack(0.0));
+      for (int k = 0; k < Pack::size; ++k) {  // lanes past the end repeat the last state
+        const double* const from = U.col(first + std::min<Index>(k, count - 1)).data();
+        for (Index v = 0; v < numbering_.num_free(); ++v)
+          for (int c = 0; c < node_dim; ++c)
+            u[numbering_.free_nodes()[v] * node_dim + c].set(k, from[v * node_dim + c]);
+      }
+      std::array<Pack, pieces> e;
+      parallel_for(pieces, [&](Index piece) {
+        Pack* const f = sums(piece);
+        std::fill_n(f, unknowns, Pack(0.0));
+        Pack sum(0.0);
+        const Index end = m * (piece + 1) / pieces;
+        for (Index i = m * piece / pieces; i < end; ++i) {
+          const Index* const soon = stencils_.data() + std::min(i + 6, end - 1) * Model::stencil_size;
+          for (int a = 0; a < Model::stencil_size; ++a)
+            for (int c = 0; c < node_dim; ++c) {
+              __builtin_prefetch(u + soon[a] * node_dim + c);
+              __builtin_prefetch(f + soon[a] * node_dim + c, 1);
+            }
+          const TermPack<Model> term(model_, i);
+          const Index* nodes = stencils_.data() + i * Model::stencil_size;
+          Local<Model::local_dofs, Pack> u_i;
+          for (int a = 0; a < Model::stencil_size; ++a)
+            for (int c = 0; c < node_dim; ++c) u_i[a * node_dim + c] = u[nodes[a] * node_dim + c];
+          const Local<Model::local_dofs, Pack> f_i = term.force(u_i);
+          for (int a = 0; a < Model::stencil_size; ++a)
+            for (int c = 0; c < node_dim; ++c) f[nodes[a] * node_dim + c] += f_i[a * node_dim + c];
+          if constexpr (with_energies) sum += term.energy(u_i);
+        }
+        e[piece] = sum;
+      });
+      for (int k = 0; k < count; ++k) {
+        double* const to = F.col(first + k).data();
+        for (Index v = 0; v < numbering_.num_free(); ++v)
+          for (int c = 0; c < node_dim; ++c) {
+            const Index row = numbering_.free_nodes()[v] * node_dim + c;
+            to[v * node_dim + c] = sums(0)[row][k] + sums(1)[row][k];
+          }
+        if constexpr (with_energies) energies[first + k] = e[0][k] + e[1][k];
+      }
+    }
   }
 
   Local<Model::local_dofs, Pack> gather(VectorIn full, Index p) const {

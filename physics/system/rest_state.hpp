@@ -20,8 +20,9 @@ struct RestState {
   const NodeNumbering& numbering;
   std::span<const Index> stencils;
   Index stencil_size;
-  Index node_dim;                                      ///< unknowns of a node
-  std::function<void(VectorIn u, VectorOut f)> force;  ///< over the free unknowns; safe from several threads
+  Index node_dim;  ///< unknowns of a node
+  /// Of many states over the free unknowns, a column each; safe from several threads.
+  std::function<void(MatrixIn U, MatrixOut F)> forces;
 
   /// Columns over the free unknowns → over all nodes, n · node_dim × k, zero where fixed.
   RowMatrix expand(MatrixIn columns) const {

@@ -1,4 +1,5 @@
 #include <core/check.hpp>
+#include <core/parallel.hpp>
 #include <reduction/basis/force_curvature.hpp>
 
 #include <algorithm>
@@ -41,32 +42,62 @@ double ForceCurvature::size(VectorIn x) const {
   return largest;
 }
 
-Vector ForceCurvature::difference(VectorIn x, double step) const {
-  Vector there(x.size()), back(x.size());
-  object_.force(step * x, there);
-  object_.force(-step * x, back);
-  return (there + back) / (step * step);
+Vector ForceCurvature::operator()(VectorIn x) const {
+  Vector H(x.size());
+  few_squares(x, H);
+  return H;
 }
 
-Vector ForceCurvature::operator()(VectorIn x) const {
-  require(x.allFinite(), "the second derivative of the force: x is not finite");
-  const double size_of_x = size(x);
-  if (size_of_x == 0) return Vector::Zero(x.size());
+Matrix ForceCurvature::squares(MatrixIn X) const {
+  Matrix H(X.rows(), X.cols());
+  constexpr Index at_once = 2;
+  parallel_ranges(X.cols(), at_once, [&](Index begin, Index end) {
+    few_squares(X.middleCols(begin, end - begin), H.middleCols(begin, end - begin));
+  });
+  return H;
+}
+
+void ForceCurvature::few_squares(MatrixIn X, MatrixOut H) const {
+  require(X.allFinite(), "the second derivative of the force: x is not finite");
   // forces that cancel leave rounding, which must not be taken for a step that is too long
-  const auto rounding = [&](double step) {
+  const auto rounding = [&](VectorIn x, double step) {
     double largest = 0;
     for (Index j = 0; j < object_.K.cols(); ++j)
       for (SparseMatrix::InnerIterator it(object_.K, j); it; ++it)
         largest = std::max(largest, std::abs(it.value() * x[j]));
-    return 8 * std::numeric_limits<double>::epsilon() * largest / (step * step * size_of_x) *
+    return 8 * std::numeric_limits<double>::epsilon() * largest / (step * step * size(x)) *
            std::sqrt(static_cast<double>(x.size()));
   };
-  for (double step = 1.0 / 128 / size_of_x; step * size_of_x > 1e-6; step /= 4) {
-    const Vector coarse = difference(x, step), fine = difference(x, step / 2);
-    const double change = (fine - coarse).norm();  // may be NaN
-    if (change <= 1e-2 * fine.norm() || change <= rounding(step)) return fine + (fine - coarse) / 3;
+  std::vector<Index> open;
+  for (Index k = 0; k < X.cols(); ++k) open.push_back(k);
+  Vector unit(X.cols());  // step of size 1
+  for (const Index k : open) unit[k] = 1 / size(X.col(k));
+  H.setZero();
+  std::erase_if(open, [&](Index k) { return !std::isfinite(unit[k]); });
+  for (double scale = 1.0 / 128; !open.empty() && scale > 1e-6; scale /= 4) {
+    const auto count = static_cast<Index>(open.size());
+    Matrix states(X.rows(), 4 * count), f(X.rows(), 4 * count);
+    for (Index o = 0; o < count; ++o) {
+      const auto x = scale * unit[open[o]] * X.col(open[o]);
+      states.middleCols(4 * o, 4) << x, -x, 0.5 * x, -0.5 * x;
+    }
+    object_.forces(states, f);
+    std::vector<Index> left;
+    for (Index o = 0; o < count; ++o) {
+      const Index k = open[o];
+      const double step = scale * unit[k];
+      const Vector coarse = (f.col(4 * o) + f.col(4 * o + 1)) / (step * step);
+      const Vector fine = 4 * (f.col(4 * o + 2) + f.col(4 * o + 3)) / (step * step);
+      const double change = (fine - coarse).norm();  // may be NaN
+      if (change <= 1e-2 * fine.norm() || change <= rounding(X.col(k), step))
+        H.col(k) = fine + (fine - coarse) / 3;
+      else
+        left.push_back(k);
+    }
+    open = std::move(left);
   }
-  throw SolverError("the second derivative of the force at rest: differences of forces do not converge");
+  if (!open.empty())
+    throw SolverError("the second derivative of the force at rest: differences of forces do not converge");
 }
 
 Vector ForceCurvature::operator()(VectorIn a, VectorIn b) const {

@@ -26,6 +26,8 @@ class ForceCurvature {
 
   /// H(x, x) [N] for x over the free unknowns. \throws SolverError if no step gives forces that agree.
   Vector operator()(VectorIn x) const;
+  /// H(x, x) of each column, two at a time: eight states go through the forces together.
+  Matrix squares(MatrixIn X) const;
   /// H(a, b), for a and b of about equal size; errors are relative to the larger of H(a, a) and H(b, b).
   Vector operator()(VectorIn a, VectorIn b) const;
 
@@ -34,7 +36,8 @@ class ForceCurvature {
     Index a, b;  // free numbers; −1: fixed
     double inverse_distance;
   };
-  Vector difference(VectorIn x, double step) const;  // [f(h x) + f(−h x)] / h²
+
+  void few_squares(MatrixIn X, MatrixOut H) const;
 
   const RestState& object_;
   std::vector<Pair> pairs_;

@@ -89,8 +89,7 @@ ModalDerivativeVectors modal_derivatives(const RestState& object, const Vibratio
   Matrix phi = object.restrict(modes.vectors.rightCols(r));
   Vector sizes(r);  // modes of one size add up without loss of digits
   for (Index i = 0; i < r; ++i) phi.col(i) /= sizes[i] = H.size(phi.col(i));
-  Matrix own(phi.rows(), r);  // H(φ_i, φ_i)
-  parallel_for(r, [&](Index i) { own.col(i) = H(phi.col(i)); });
+  const Matrix own = H.squares(phi);  // H(φ_i, φ_i)
 
   ModalDerivativeVectors result;
   for (Index i = 0; i < r; ++i)
@@ -102,14 +101,19 @@ ModalDerivativeVectors modal_derivatives(const RestState& object, const Vibratio
   constexpr Index at_once = 32;  // bounds the memory
   for (Index begin = 0; begin < count; begin += at_once) {
     Matrix loads(phi.rows(), std::min(at_once, count - begin));
-    parallel_for(loads.cols(), [&](Index k) {
-      const Index i = result.pairs[begin + k][0] - first, j = result.pairs[begin + k][1] - first;
-      const double scale = -sizes[i] * sizes[j];
-      if (i == j)
-        loads.col(k) = scale * own.col(i);
-      else
-        loads.col(k) = 0.5 * scale * (H(phi.col(i) + phi.col(j)) - (own.col(i) + own.col(j)));
-    });
+    const auto modes_of = [&](Index k) {
+      return std::pair(result.pairs[begin + k][0] - first, result.pairs[begin + k][1] - first);
+    };
+    Matrix sums(phi.rows(), loads.cols());
+    for (Index k = 0; k < sums.cols(); ++k) {
+      const auto [i, j] = modes_of(k);
+      sums.col(k) = phi.col(i) + phi.col(j);
+    }
+    const Matrix squares = H.squares(sums);
+    for (Index k = 0; k < loads.cols(); ++k) {
+      const auto [i, j] = modes_of(k);
+      loads.col(k) = -0.5 * sizes[i] * sizes[j] * (squares.col(k) - (own.col(i) + own.col(j)));
+    }
     const auto [theta, residual] = respond.solve(std::move(loads), tolerance);
     result.residual = std::max(result.residual, residual);
     result.vectors.middleCols(begin, theta.cols()) = object.expand(theta);
@@ -124,6 +128,9 @@ ModalDerivativeVectors modal_derivatives(const RestState& object, const Vibratio
 DenseBasis ModalDerivatives::operator()(const RestState& object) const {
   object.require_space();
   const FreeComponents parts = find_free_components(object.stencils, object.stencil_size, object.numbering);
+  require(parts.num_rigid_modes() + num_modes <= object.mass.size(),
+          "number of modes is " + std::to_string(num_modes) + " beside " + std::to_string(parts.num_rigid_modes()) +
+              " rigid ones, but the system has only " + std::to_string(object.mass.size()) + " unknowns");
   const VibrationModes modes =
       vibration_modes(object, {parts.num_rigid_modes() + num_modes, tolerance, seed, progress});
   const ModalDerivativeVectors derivatives = modal_derivatives(object, modes, tolerance, progress);
@@ -166,7 +173,9 @@ DenseBasis ModalDerivatives::operator()(const RestState& object) const {
     coordinates.col(k) *= lambda_1 * lambda_1 / (lambda[derivatives.pairs[k][0]] * lambda[derivatives.pairs[k][1]]);
   const Eigen::JacobiSVD<Matrix> svd(coordinates, Eigen::ComputeThinU);
   report.singular_values = svd.singularValues();
-  const Index wanted = dimension == 0 ? added.cols() : std::min(dimension - kept, added.cols());
+  require(num_derivatives >= 0, "number of derivatives is " + std::to_string(num_derivatives) + ", expected 0 or more");
+  const Index asked = dimension > 0 ? dimension - kept : num_derivatives > 0 ? num_derivatives : added.cols();
+  const Index wanted = std::min(asked, added.cols());
   if (dimension > kept + added.cols())
     report.notes.push_back("modes and all their derivatives span " + std::to_string(kept + added.cols()) +
                            " dimensions, fewer than the " + std::to_string(dimension) + " asked for");

@@ -32,6 +32,7 @@ struct ModalDerivatives {
   /// what the derivatives add to the modes, in the mass norm, with θ_ij weighted by λ₁² / (λ_i λ_j), λ = ω²:
   /// the spread of a response to loads that excite low frequencies most. Subspaces of growing d are nested.
   Index dimension = 0;
+  Index num_derivatives = 0;   ///< where `dimension` is 0: of these components, whatever else there is; 0: all
   bool affine_fields = false;  ///< free parts bring all 12 affine motions instead of the 6 rigid ones
   double tolerance = 1e-8;     ///< of modes and derivatives, relative residuals
   std::uint64_t seed = 1;

@@ -65,6 +65,8 @@ NamedSubspace derivatives() {
   return named_subspace(
       "derivatives", "modal derivatives",
       OptionsOf(ModalDerivatives{.affine_fields = true})
+          .add("num_derivatives", &ModalDerivatives::num_derivatives,
+               "leading components of the derivatives beside modes and free motions, without --dimension; 0: all")
           .add("affine_fields", &ModalDerivatives::affine_fields, "whether free parts bring all 12 affine motions"),
       "modes and derivatives");
 }

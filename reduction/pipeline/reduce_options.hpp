@@ -7,6 +7,7 @@
 #include <sparse/selection/selection.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,13 +28,21 @@ struct ReduceOptions {
   /// largest poses, a third of that for shells, which buckle; all together weigh as much as the other poses. None: see
   /// num_equilibria().
   std::optional<Index> equilibria = {};
-  std::string selector = "nn-sp";      ///< one of known_selectors(), with options as in "nn-sp:patience=3"
-  Index points = 150;                  ///< s, largest number of components
-  double target_error = 0;             ///< if positive: as few components as reach this training error
+  /// Instead of these; where forces relax, of linear responses exactly, by default 0.12, 0.06, 0.03 and for shells a third.
+  std::vector<double> equilibrium_amplitudes = {};
+  double equilibrium_weight = 1;  ///< of all their rows together, beside all rows of the other poses
+  /// Whether the forces at the equilibria are those of the full object whose displacements outside of the subspace have
+  /// relaxed (see Relaxation), instead of those of all components in the subspace: a model can be nearer to the full
+  /// object than its subspace with all components.
+  bool relaxed = false;
+  std::string selector = "nn-sp";  ///< one of known_selectors(), with options as in "nn-sp:patience=3"
+  Index points = 150;              ///< s, largest number of components; 0: four thirds of the dimension, shells: eight
+  double target_error = 0;         ///< if positive: as few components as reach this training error
   std::vector<Index> candidates = {};  ///< components that may be selected beside must_keep; empty: all
   std::vector<Index> must_keep = {};   ///< components that every selection has, unless their weight would be 0
   Selection warm_start = {};           ///< an earlier selection to improve, such as that of a model to update
   Index held_out_poses = 100;          ///< random ones at each of three amplitudes; 0: measure nothing held out
+  Index full_loads = 0;                ///< fresh loads under which the model is compared with the full object; 0: none
   std::uint64_t seed = 1;
 
   SubspaceChoice subspace_choice() const {
@@ -44,10 +53,29 @@ struct ReduceOptions {
   /// which the paper leaves open, is the one at which its error for the dragon comes out (7 % of the
   /// diagonal).
   static ReduceOptions paper();
+  /// Modal derivatives, and weights fitted to what the full object answers: at the same time a step several times nearer to
+  /// the full object than the default-constructed options (docs/decisions).
+  /// \param modes  r, from which d and s follow.
+  static ReduceOptions relaxed_derivatives(Index modes = 20);
 };
 
 /// \throws std::invalid_argument for options out of range.
 void check(const ReduceOptions& options);
+
+/// Distance of a model's equilibria from those of the full object under the same fresh loads, along the ten softest
+/// modes, that displace the object by 8 and 4 % of its diagonal (rms of the linear response; shells: a third). Rms over the
+/// loads of ‖u_full − U q‖_M / ‖u_full‖_M and its two parts, which are orthogonal: total² = outside² + inside². NaN if not
+/// measured.
+struct FullError {
+  double total = nan, outside = nan, inside = nan;
+  double worst = nan;  ///< of a load, total
+  Index loads = 0,
+        halved = 0;      ///< how many were compared; of these, after halving, for no equilibrium was found before
+  Index unfinished = 0;  ///< left out, for no full equilibrium was found after that either
+
+ private:
+  static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+};
 
 /// Everything that was measured on the way.
 struct ReduceReport {
@@ -60,6 +88,7 @@ struct ReduceReport {
   std::vector<std::pair<double, double>> held_out;  ///< share of that amplitude (1, 0.3, 0.1) and error
   /// Softest flexible eigenvalues of the fitted rest stiffness and of the exact reduced one [1/s²].
   Vector fitted_eigenvalues, exact_eigenvalues;
+  FullError full_error;  ///< against the full object; the other errors are against all components in the subspace
   double equilibrium_error = 0;  ///< rms of ‖Δq‖ / ‖q‖ over the equilibria, by the model's own tangents; NaN without
   SelectionReport selection;
   std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order

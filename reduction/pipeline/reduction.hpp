@@ -31,7 +31,9 @@ struct Reduction : ReducedForces<std::shared_ptr<const S>> {
 template <ForceModel Model, Subspace S, typename Selector>
 Selection select_components(const Training<Model, S>& training, const Selector& select, const ReduceOptions& options,
                             const Progress& progress) {
-  SelectionRequest request(std::min<Index>(options.points, training.fitting.cols()));
+  const Index d = training.object.subspace->dim();
+  const Index points = options.points > 0 ? options.points : (training.object.traits.thin ? 8 * d : 4 * d) / 3;
+  SelectionRequest request(std::min<Index>(points, training.fitting.cols()));
   request.target_error = options.target_error;
   request.candidates = options.candidates;
   request.must_keep = options.must_keep;
@@ -73,6 +75,51 @@ SelectionChecks check(const Training<Model, S>& training, const WorkingComponent
   return checks;
 }
 
+/// The stage that compares a model with the full object, under loads it has not seen.
+template <ForceModel Model, Subspace S>
+FullError full_error(const Training<Model, S>& training, const WorkingComponents& working,
+                     const ReduceOptions& options) {
+  FullError result;
+  if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
+    const ReducedObject<Model, S>& object = training.object;
+    std::vector<double> amplitudes{0.08, 0.04};
+    if (object.traits.thin)
+      for (double& amplitude : amplitudes) amplitude /= 3;
+    constexpr Index num_modes = 10;
+    Matrix linear = soft_responses(object, num_modes, options.full_loads, amplitudes, RunSeeds(options).full_loads);
+    const auto system = object.reduced_system(working.indices, working.weights);
+    const auto relaxation = training.relaxation ? training.relaxation : relaxation_of(object);
+    double outside = 0, inside = 0, worst = 0;
+    for (int halvings = 0; halvings <= 2 && linear.cols() > 0; ++halvings) {
+      const Matrix reduced = equilibrium_poses(system, object.modes, linear);
+      const FullStates full = relaxation->equilibria(object.rest_stiffness * linear, reduced);
+      std::vector<Index> left;
+      for (Index t = 0; t < linear.cols(); ++t) {
+        const double out = std::pow(full.outside[t], 2);
+        const double in = (full.Q.col(t) - reduced.col(t)).squaredNorm() / std::pow(full.sizes[t], 2);
+        if (!(full.residuals[t] < std::max(1e-6, 0.1 * std::sqrt(out + in)))) {
+          left.push_back(t);
+          continue;
+        }
+        outside += out;
+        inside += in;
+        worst = std::max(worst, out + in);
+        ++result.loads;
+        if (halvings > 0) ++result.halved;
+      }
+      linear = Matrix(0.5 * linear(Eigen::all, left));
+    }
+    result.unfinished = linear.cols();
+    if (result.loads == 0) return result;
+    const auto count = static_cast<double>(result.loads);
+    result.outside = std::sqrt(outside / count);
+    result.inside = std::sqrt(inside / count);
+    result.total = std::sqrt((outside + inside) / count);
+    result.worst = std::sqrt(worst);
+  }
+  return result;
+}
+
 /// All stages from training to checks.
 template <ForceModel Model, Subspace S, typename Selector>
 Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std::shared_ptr<const S> subspace,
@@ -89,6 +136,13 @@ Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std:
   const SelectionChecks checks = stage("checks", [&](auto) { return check(training, working); });
 
   ReduceReport report = report_of(training);
+  if (options.full_loads > 0)
+    stage("full object", [&](auto) { report.full_error = full_error(training, working, options); });
+  const FullError& full = report.full_error;
+  if (full.unfinished > 0)
+    report.notes.push_back("equilibria of the full object under " + std::to_string(full.unfinished) + " of " +
+                           std::to_string(options.full_loads) +
+                           " fresh loads were not found; its error is that of the others");
   report.points = static_cast<Index>(working.indices.size());
   report.selection = selection.report;
   report.training_error = checks.training_error;

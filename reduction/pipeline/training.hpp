@@ -10,6 +10,7 @@
 #include <reduction/system/reduced_system.hpp>
 #include <reduction/training/equilibrium_fitting.hpp>
 #include <reduction/training/force_fitting.hpp>
+#include <reduction/training/relaxation.hpp>
 #include <reduction/training/training_poses.hpp>
 #include <sparse/nnls/working_set.hpp>
 #include <sparse/problem/any_problem.hpp>
@@ -18,6 +19,7 @@
 
 #include <memory>
 #include <optional>
+#include <type_traits>
 
 namespace supple {
 
@@ -35,12 +37,13 @@ WorkingComponents with_positive_weights(std::span<const Index> indices, VectorIn
 
 /// The seeds of what is drawn at random in a run, apart from one another. The seed of the run moves all of them.
 struct RunSeeds {
-  std::uint64_t poses, held_out, equilibria, selection;
+  std::uint64_t poses, held_out, equilibria, full_loads, selection;
 
   explicit RunSeeds(const ReduceOptions& options)
       : poses(options.poses.seed + 1000003 * options.seed),
         held_out(poses + 7919),
         equilibria(poses + 15485863),
+        full_loads(poses + 32452843),
         selection(options.seed) {}
 };
 
@@ -65,18 +68,28 @@ struct ReducedObject {
   Vector softest_eigenvalues(const Matrix& stiffness, Index count = 5) const;
 };
 
+/// The Relaxation of an object, nothing for forces without a potential.
+template <ForceModel F, Subspace S>
+struct NoRelaxation {};
+template <ForceModel F, Subspace S>
+using RelaxationOf =
+    typename std::conditional_t<PotentialModel<F> && has_symmetric_tangent<F>(), std::type_identity<Relaxation<F, S>>,
+                                std::type_identity<NoRelaxation<F, S>>>::type;
+
 /// What a selection is made for, and what it is judged by: the object and what came out of the stages of train().
 template <ForceModel F, Subspace S>
 struct Training {
   using Model = F;
   using Fitting = ForceFitting<Model, S>;
   using Equilibria = EquilibriumFitting<Model, S>;
+  using Relaxing = RelaxationOf<Model, S>;
 
   ReducedObject<F, S> object;
   TrainingPoses poses;
   Fitting fitting;                                   ///< on the training poses
   std::vector<std::pair<double, Fitting>> held_out;  ///< on fresh poses at these shares of the largest amplitude
   std::optional<Equilibria> equilibria = {};
+  std::shared_ptr<const Relaxing> relaxation = {};  ///< if forces relaxed
 
   /// The equilibria by its own tangents; there must be some.
   Equilibria equilibria_of(const WorkingComponents& working) const {
@@ -138,12 +151,62 @@ TrainingPoses training_poses(const ReducedObject<Model, S>& object, const PoseOp
                         object.traits.inverted);
 }
 
+/// Null for forces without a potential.
+template <ForceModel F, Subspace S>
+std::shared_ptr<const RelaxationOf<F, S>> relaxation_of(const ReducedObject<F, S>& object) {
+  if constexpr (PotentialModel<F> && has_symmetric_tangent<F>())
+    return std::make_shared<const Relaxation<F, S>>(object.system, object.subspace, object.modes);
+  else
+    return nullptr;
+}
+
+/// Linear responses to random loads along the softest flexible modes, coordinates z / ω² with normal z, each of the rms
+/// displacement that is its turn. \param num_modes  at most so many. \param amplitudes  shares of the diagonal. \return d × T
+template <ForceModel Model, Subspace S>
+Matrix soft_responses(const ReducedObject<Model, S>& object, Index num_modes, Index count,
+                      const std::vector<double>& amplitudes, std::uint64_t seed) {
+  const ReducedModes& modes = object.modes;
+  const Index first = modes.num_zero, soft = std::min(num_modes, modes.Phi.cols() - first);
+  const double unit = object.traits.diagonal * std::sqrt(object.system->nodal_mass().sum());
+  Random random(seed);
+  Matrix Q(modes.Phi.rows(), count);
+  for (Index t = 0; t < count; ++t) {
+    Vector z(soft);
+    for (Index k = 0; k < soft; ++k) z[k] = random.normal() / std::pow(modes.omega[first + k], 2);
+    Q.col(t) = modes.Phi.middleCols(first, soft) * (amplitudes[t % amplitudes.size()] * unit / z.norm() * z);
+  }
+  return Q;
+}
+
+/// The linear responses to the loads of the equilibria. \param poses  those of training. \return d × T
+template <ForceModel Model, Subspace S>
+Matrix equilibrium_loads(const ReducedObject<Model, S>& object, PoseOptions poses, const RunSeeds& seeds,
+                         const ReduceOptions& options) {
+  const Index count = object.traits.equilibria;
+  std::vector<double> amplitudes = options.equilibrium_amplitudes;
+  const double largest = options.relaxed ? 0.12 : 3 * poses.largest_amplitude();
+  if (amplitudes.empty())
+    for (const double share : {1.0, options.relaxed ? 0.5 : 1.0 / 3, options.relaxed ? 0.25 : 0.1})
+      amplitudes.push_back(share * largest / (object.traits.thin ? 3 : 1));
+  if (options.relaxed) {
+    const SubspaceReport& made = object.subspace->report;
+    const Index num_modes = made.omega.size() > 0 ? made.omega.size() - made.rigid_modes : object.subspace->dim();
+    return soft_responses(object, num_modes, count, amplitudes, seeds.equilibria);
+  }
+  poses.count = count;
+  poses.amplitudes = amplitudes;
+  poses.seed = seeds.equilibria;
+  poses.inverted = InvertedPoses::Keep;  // nothing is trained on them
+  return sample_poses(object, poses).Q;
+}
+
 /// Poses in equilibrium of a rough selection. \throws std::invalid_argument for forces without a potential.
-/// \param poses  those of training.
+/// \param poses  those of training.  \param relaxation  of the object, or null: nothing relaxes.
 template <ForceModel Model, Subspace S>
 EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& object,
-                                            const ForceFitting<Model, S>& fitting, PoseOptions poses,
-                                            const RunSeeds& seeds) {
+                                            const ForceFitting<Model, S>& fitting, const PoseOptions& poses,
+                                            const RunSeeds& seeds, const ReduceOptions& options,
+                                            const RelaxationOf<Model, S>* relaxation) {
   if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
     const auto& model = object.system->shared_model();
     const ObjectTraits& traits = object.traits;
@@ -151,24 +214,19 @@ EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& objec
     const WorkingComponents working =
         working_components(BatchedGreedy{.seed = seeds.selection}(AnyProblem(fitting), size), "batched-greedy");
     const AnySystem<Matrix> rough = object.any_system(working.indices, working.weights);
-    const double largest = poses.largest_amplitude();
-    poses.count = traits.equilibria;
-    poses.amplitudes = {3 * largest, largest, 0.3 * largest};
-    if (traits.thin)
-      for (double& amplitude : poses.amplitudes) amplitude /= 3;
-    poses.seed = seeds.equilibria;
-    poses.inverted = InvertedPoses::Keep;  // of the linear responses, which nothing is trained on
-    const Matrix linear = sample_poses(object, poses).Q;
-    const Matrix relaxed =
+    const Matrix linear = equilibrium_loads(object, poses, seeds, options);
+    const Matrix at_rest =
         treat_inverted(model, *object.subspace, equilibrium_poses(rough, object.modes, linear), traits.inverted).Q;
+    const Matrix targets = relaxation ? relaxation->relaxed(at_rest).forces : Matrix();
     const double share = static_cast<double>(fitting.num_poses()) / static_cast<double>(traits.equilibria);
     return {model,
             object.subspace,
-            relaxed,
+            at_rest,
+            targets,
             [&](VectorIn q) { return rough.stiffness(q); },
             object.modes.softest_stiffness(),
-            20 + object.modes.num_zero,
-            std::sqrt(share)};
+            (relaxation ? 40 : 20) + object.modes.num_zero,
+            options.equilibrium_weight * std::sqrt(share)};
   } else {
     throw std::invalid_argument("equilibria need forces with a potential");
   }
@@ -209,8 +267,11 @@ Training<Model, S> train(std::shared_ptr<const FullSystem<Model>> system, std::s
     });
   Training<Model, S> training{std::move(object), std::move(poses), std::move(fitting), std::move(held_out)};
   if (training.object.traits.equilibria > 0)
-    stage("equilibria",
-          [&](auto) { training.equilibria = fit_equilibria(training.object, training.fitting, pose_options, seeds); });
+    stage("equilibria", [&](auto) {
+      if (options.relaxed) training.relaxation = relaxation_of(training.object);
+      training.equilibria =
+          fit_equilibria(training.object, training.fitting, pose_options, seeds, options, training.relaxation.get());
+    });
   return training;
 }
 

@@ -31,7 +31,8 @@ Matrix equilibrium_poses(const System& system, const ReducedModes& modes, Matrix
 ///   Lₜ f̄ᵢ(q_t),  Lₜ = Λ⁻¹ Vᵀ / ‖q_t‖
 /// with the `rank` softest eigenpairs of the tangent there (not at rest: poses are stiffer here and softer there).
 /// At rest under loads stiff modes have relaxed; forces are small, and errors that drown in those of random poses
-/// displace soft modes. Equal to ‖Δq‖ / ‖q_t‖ for small errors Δf̄ = K̄(q_t) Δq along these modes.
+/// displace soft modes. Equal to ‖Δq‖ / ‖q_t‖ for small errors Δf̄ = K̄(q_t) Δq along these modes. What the components are
+/// to add up to are the forces of all of them, F̄(q_t), or others: those of the full object, relaxed (see Relaxation).
 /// A BlockFittingProblem, FullGradientProblem and GroupedFittingProblem (groups are poses).
 template <ForceModel Model, Subspace S>
 class EquilibriumFitting {
@@ -41,17 +42,22 @@ class EquilibriumFitting {
   using Columns = DenseColumns;
 
   /// \param poses    d × T, none without force.
+  /// \param targets  d × T, what the components are to add up to; empty: the forces of all of them.
   /// \param tangent  K̄(q), d × d: that of a rough selection will do.
   /// \param softest  the lowest eigenvalue to be told from zero, such as the softest flexible one at rest: divisors are
   /// kept above a quarter of it.
   /// \param rank     eigenpairs for each pose.
   /// \param scale    of all rows.
   EquilibriumFitting(std::shared_ptr<const Model> model, std::shared_ptr<const S> subspace, const Matrix& poses,
-                     const std::function<Matrix(VectorIn q)>& tangent, double softest, Index rank, double scale = 1)
+                     const Matrix& targets, const std::function<Matrix(VectorIn q)>& tangent, double softest,
+                     Index rank, double scale = 1)
       : forces_(std::move(model), std::move(subspace), Matrix::Identity(poses.rows(), poses.rows()), poses),
+        targets_(targets.size() > 0 ? targets : forces_.forces()),
         softest_(softest),
         scale_(scale),
         L_(poses.cols()) {
+    require_size("targets.rows()", targets_.rows(), poses.rows());
+    require_size("targets.cols()", targets_.cols(), poses.cols());
     parallel_for(poses.cols(),
                  [&](Index t) { L_[t] = displacements(tangent(poses.col(t)), t, std::min(rank, poses.rows())); });
     complete();
@@ -67,9 +73,9 @@ class EquilibriumFitting {
     parallel_for(num_groups(), [&](Index t) {
       const auto q = poses().col(t);
       const Matrix own = displacements(system.stiffness(q), t, L_[t].rows());
-      if ((own * (system.force(q) - forces_.forces().col(t))).norm() < trusted * scale_) L[t] = own;
+      if ((own * (system.force(q) - targets_.col(t))).norm() < trusted * scale_) L[t] = own;
     });
-    return {forces_, std::move(L), softest_, scale_};
+    return {forces_, targets_, std::move(L), softest_, scale_};
   }
 
   Index rows() const { return b_.size(); }  ///< rank · T
@@ -131,12 +137,12 @@ class EquilibriumFitting {
   EquilibriumFitting restricted_to(std::span<const Index> poses) const {
     std::vector<Matrix> L;
     for (const Index t : poses) L.push_back(L_[t]);
-    return {forces_.restricted_to(poses), std::move(L), softest_, scale_};
+    return {forces_.restricted_to(poses), targets_(Eigen::all, poses), std::move(L), softest_, scale_};
   }
 
  private:
-  EquilibriumFitting(ForceFitting<Model, S> forces, std::vector<Matrix> L, double softest, double scale)
-      : forces_(std::move(forces)), softest_(softest), scale_(scale), L_(std::move(L)) {
+  EquilibriumFitting(ForceFitting<Model, S> forces, Matrix targets, std::vector<Matrix> L, double softest, double scale)
+      : forces_(std::move(forces)), targets_(std::move(targets)), softest_(softest), scale_(scale), L_(std::move(L)) {
     complete();
   }
 
@@ -152,13 +158,13 @@ class EquilibriumFitting {
     const Index r = L_.front().rows();
     b_.resize(r * num_groups());
     for (Index t = 0; t < num_groups(); ++t) {
-      const Vector f = forces_.forces().col(t);
-      L_by_axis_.push_back(f.norm() * rows_by_axis<block>(L_[t].transpose()));
-      b_.segment(t * r, r) = L_[t] * f;
+      L_by_axis_.push_back(forces_.forces().col(t).norm() * rows_by_axis<block>(L_[t].transpose()));
+      b_.segment(t * r, r) = L_[t] * targets_.col(t);
     }
   }
 
   ForceFitting<Model, S> forces_;  // in the norm I: local forces over ‖F̄(q_t)‖
+  Matrix targets_;                 // d × T
   double softest_, scale_;
   std::vector<Matrix> L_;          // rank × d for each pose
   std::vector<Matrix> L_by_axis_;  // their transposes times ‖F̄(q_t)‖, rows ordered by axes

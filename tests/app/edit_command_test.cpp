@@ -23,8 +23,8 @@ constexpr const char* bend = R"({
 class EditCommandTest : public SuppleProcess {
  protected:
   void reduce(Arguments more = {}) const {
-    Arguments arguments{"reduce", "bar:8x2x2", "-o", "bar.supple", "--poses",
-                        "40",     "--points",  "80", "--held-out", "0"};
+    Arguments arguments{"reduce",   "bar:8x2x2", "-o",         "bar.supple", "--poses",  "40",
+                        "--points", "80",        "--held-out", "0",          "--recipe", "subspace"};
     if (more.empty()) more = {"--modes", "11"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = supple(arguments);

@@ -19,6 +19,11 @@ class ReduceCommandTest : public SuppleProcess {
   static Arguments small(Arguments more = {}) {
     Arguments arguments{"reduce", "bar:8x2x2", "-o", "bar.supple", "--fix", "x<=0",       "--modes",
                         "4",      "--poses",   "20", "--points",   "30",    "--held-out", "10"};
+    return by_the_subspace(std::move(arguments), more);
+  }
+  /// What a test measures about the fit to all components in the subspace.
+  static Arguments by_the_subspace(Arguments arguments, const Arguments& more) {
+    if (std::ranges::find(more, "--recipe") == more.end()) arguments.insert(arguments.end(), {"--recipe", "subspace"});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -27,8 +32,7 @@ class ReduceCommandTest : public SuppleProcess {
   static Arguments cells(const std::string& mesh, Arguments more = {}) {
     Arguments arguments{"reduce", mesh,      "-o", "bar.supple", "--fix", "x<=0",       "--modes",
                         "4",      "--poses", "20", "--points",   "24",    "--held-out", "5"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+    return by_the_subspace(std::move(arguments), more);
   }
   /// Removes and spoils each array of the model that a job makes, in turn.
   void expect_arrays_checked(const Arguments& job) const;
@@ -107,6 +111,49 @@ TEST_F(ReduceCommandTest, TakesRecipesAndWhatOverridesThem) {
   EXPECT_EQ(usual["omega_exponent"], 2);
 }
 
+TEST_F(ReduceCommandTest, FitsToTheFullObjectByDefault) {
+  const auto job = [](const Arguments& more = {}) {
+    Arguments arguments{"reduce", "bar:8x2x2", "-o", "bar.supple", "--fix", "x<=0", "--modes", "6", "--held-out", "5"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  const json relaxed = report(job());
+  EXPECT_EQ(relaxed["options"]["recipe"], "relaxed");
+  EXPECT_EQ(relaxed["options"]["relaxed"], true);
+  EXPECT_EQ(relaxed["dimension"], 27);  // 4.5 r
+  EXPECT_LE(relaxed["points"], 36);     // 4/3 d
+  const json& full = relaxed["full_error"];
+  const double total = full["total"], outside = full["outside_subspace"], inside = full["inside_subspace"];
+  EXPECT_EQ(full["loads"].get<int>() + full["unfinished"].get<int>(), 8);
+  EXPECT_NEAR(total * total, outside * outside + inside * inside, 1e-12);
+  EXPECT_LT(total, 0.1);
+  EXPECT_GE(full["worst"], total);
+  EXPECT_THAT(supple(job()).out, HasSubstr("fresh loads"));
+
+  EXPECT_TRUE(report(job({"--full-loads", "0"}))["full_error"]["total"].is_null());
+  const json extended = report(job({"--subspace", "extended", "--full-loads", "3", "--amplitude", "0.02"}));
+  EXPECT_EQ(extended["options"]["recipe"], "relaxed");
+  EXPECT_EQ(extended["options"]["equilibrium_amplitudes"], json({0.02}));
+  EXPECT_EQ(extended["full_error"]["loads"], 3);
+  EXPECT_EQ(extended["dimension"], 54);
+  EXPECT_EQ(report(job({"--equilibria", "0"}))["options"]["recipe"], "subspace");
+  expect_refusal(job({"--recipe", "relaxed", "--equilibria", "0"}), {"equilibria"});
+  expect_refusal(job({"--amplitude", "-1"}), {"amplitude"});
+  expect_refusal(job({"--full-loads", "-1"}), {"--full-loads"});
+  expect_refusal(job({"--recipe", "best"}), {"--recipe", "best"});
+}
+
+// A free object, and one of the sheet kind: what has no energy is held in the comparison.
+TEST_F(ReduceCommandTest, ComparesFreeObjectsAndShellsWithTheFullOnes) {
+  for (const char* mesh : {"bar:8x2x2", "plate:12x6", "cylinder:12x12"}) {
+    SCOPED_TRACE(mesh);
+    const json report = this->report({"reduce", mesh, "-o", "free.supple", "--modes", "6", "--held-out", "0"});
+    EXPECT_EQ(report["options"]["recipe"], "relaxed");
+    EXPECT_GE(report["full_error"]["loads"], 6);
+    EXPECT_LT(report["full_error"]["total"], 0.5);
+  }
+}
+
 TEST_F(ReduceCommandTest, UpdatesAnEarlierSelectionAmongCandidates) {
   const json first = report(small({"--selector", "nn-sp"}));
   Arguments again = small({"--warm-start", "bar.supple"});
@@ -148,6 +195,7 @@ TEST_F(ReduceCommandTest, WeightsAllCandidatesByNnls) {
   EXPECT_EQ(report(all)["options"]["points"], 160 + 10);  // 162, 165 … 189
   Arguments large = all;
   large[1] = "bar:20x20x20";
+  large.insert(large.end(), {"--full-loads", "0"});  // so few components are no object
   EXPECT_EQ(report(large)["options"]["points"], 170);
   all.insert(all.end(), {"--target-error", "0.1"});
   expect_refusal(all, {"--target-error", "all"});
@@ -273,15 +321,14 @@ TEST_F(ReduceCommandTest, TakesSurfacesAsShells) {
   const auto plate = [](Arguments more = {}) {
     Arguments arguments{"reduce", "plate:12x6", "-o", "plate.supple", "--fix", "x<12%",      "--modes",
                         "4",      "--poses",    "20", "--points",     "60",    "--held-out", "10"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+    return by_the_subspace(std::move(arguments), more);
   };
   const json report = this->report(plate({"--thickness", "2 cm", "--picture", "plate.png", "--plots", "plots"}));
   EXPECT_GT(report["mesh"]["flaps"], 100);
   EXPECT_EQ(report["options"]["equilibria"], 6);
   EXPECT_LT(report["equilibrium_error"], 0.2);
   EXPECT_EQ(this->report({"reduce", "plate:12x6", "-o", "free.supple", "--modes", "8", "--poses", "20", "--points",
-                          "60", "--held-out", "0"})["options"]["equilibria"],
+                          "60", "--held-out", "0", "--recipe", "subspace"})["options"]["equilibria"],
             0);  // free shells have none
   EXPECT_FALSE(report["mesh"].contains("tets"));
   EXPECT_EQ(report["dimension"], 36);

@@ -16,15 +16,15 @@ using testing::HasSubstr;
 class SimulateCommandTest : public SuppleProcess {
  protected:
   void reduce_bar(Arguments more = {}) const {
-    Arguments arguments{"reduce", "bar:8x2x2", "-o", "bar.supple", "--fix", "x<=0",       "--modes",
-                        "6",      "--poses",   "40", "--points",   "60",    "--held-out", "0"};
+    Arguments arguments{"reduce",  "bar:8x2x2", "-o",       "bar.supple", "--fix",      "x<=0", "--modes",  "6",
+                        "--poses", "40",        "--points", "60",         "--held-out", "0",    "--recipe", "subspace"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = supple(arguments);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
   void reduce_ball() const {
     const Outcome outcome = supple({"reduce", "ball:5", "-o", "ball.supple", "--modes", "9", "--poses", "20",
-                                    "--points", "30", "--held-out", "0"});
+                                    "--points", "30", "--held-out", "0", "--recipe", "subspace"});
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
   CsvTable table(const std::string& name) const { return read_csv(folder / name); }

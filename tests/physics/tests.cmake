@@ -5,6 +5,7 @@ supple_test(physics LABEL unit LINKS supple::physics
   SOURCES physics/mesh/tet_mesh_test.cpp physics/material/materials_test.cpp physics/material/rotation_test.cpp
           physics/model/force_model_test.cpp physics/model/tet_elasticity_test.cpp
           physics/system/dynamical_system_test.cpp physics/system/full_system_test.cpp
+          physics/system/nodal_frames_test.cpp
           physics/time/newmark_test.cpp physics/statics/static_solver_test.cpp)
 supple_test(any_system LABEL unit LINKS supple::reduction SOURCES physics/system/any_system_test.cpp)
 supple_test(time_integrators OPTIMIZED LABEL unit LINKS supple::physics SOURCES physics/time/time_integrator_test.cpp)

@@ -6,6 +6,7 @@ supple_test(reduced_system LABEL unit LINKS supple::reduction SOURCES reduction/
 supple_test(force_fitting LABEL unit LINKS supple::reduction SOURCES reduction/training/force_fitting_test.cpp)
 supple_test(equilibrium_fitting LABEL unit LINKS supple::reduction
   SOURCES reduction/training/equilibrium_fitting_test.cpp)
+supple_test(relaxation LABEL unit LINKS supple::reduction SOURCES reduction/training/relaxation_test.cpp)
 supple_test(reduce LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/reduce_test.cpp)
 supple_test(selection_study LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/selection_study_test.cpp)
 supple_test(heat_reduction LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/heat_test.cpp)

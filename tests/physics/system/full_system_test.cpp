@@ -55,6 +55,38 @@ using Factories = testing::Types<TetBar<StVenantKirchhoff>, TetBar<MooneyRivlin>
                                  HeatBar<LinearConductivity>, CoolingBar>;
 TYPED_TEST_SUITE(AssemblyTest, Factories);
 
+TYPED_TEST(AssemblyTest, ManyStatesAtOnceAreEachOfThem) {
+  const auto model = TypeParam::make();
+  using Model = std::remove_const_t<decltype(model)>;
+  const FullSystem<Model> system(model, TypeParam::nodal_mass(), {2});
+  for (const Index count : {1, 3, 8, 17}) {
+    const Matrix U = random_vector(system.dim() * count, 0.1 * TypeParam::length, 5).reshaped(system.dim(), count);
+    Matrix F(system.dim(), count);
+    system.forces(U, F);
+    for (Index k = 0; k < count; ++k) {
+      const Vector f = system.force(U.col(k));
+      EXPECT_TRUE(is_near(Vector(F.col(k)), f, 1e-12 * f.norm())) << k << " of " << count;
+    }
+    if constexpr (PotentialModel<Model>) {
+      Vector energies(count);
+      Matrix same(system.dim(), count);
+      system.forces(U, same, energies);
+      EXPECT_EQ(same, F);
+      for (Index k = 0; k < count; ++k) {
+        const double energy = system.energy(U.col(k));
+        EXPECT_NEAR(energies[k], energy, 1e-12 * std::abs(energy));
+      }
+    }
+    set_num_threads(1);
+    Matrix serial(system.dim(), count);
+    system.forces(U, serial);
+    set_num_threads(0);
+    EXPECT_EQ(serial, F);
+  }
+  Matrix few(system.dim(), 2);
+  EXPECT_THROW(system.forces(Matrix::Zero(system.dim(), 3), few), std::invalid_argument);
+}
+
 TYPED_TEST(AssemblyTest, SumsOverComponentsEqualBruteForce) {
   const auto model = TypeParam::make();
   using Model = std::remove_const_t<decltype(model)>;

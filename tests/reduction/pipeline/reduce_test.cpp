@@ -5,6 +5,8 @@
 #include <physics/body/material_law.hpp>
 #include <reduction/model/with_reduced_system.hpp>
 #include <reduction/pipeline/reduce.hpp>
+#include <reduction/pipeline/reduction.hpp>
+#include <sparse/selectors/selector_library.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
 #include <tests/support/bars.hpp>
@@ -12,6 +14,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <filesystem>
 
 namespace supple::test {
@@ -243,7 +246,7 @@ TEST(Reduce, NamesImpossibleOptions) {
     return "no exception";
   };
   using testing::HasSubstr;
-  EXPECT_THAT(message([](auto& o) { o.points = 0; }), HasSubstr("number of points is 0"));
+  EXPECT_THAT(message([](auto& o) { o.points = -1; }), HasSubstr("number of points is -1"));
   EXPECT_THAT(message([](auto& o) { o.target_error = -1; }), HasSubstr("target error"));
   EXPECT_THAT(message([](auto& o) { o.target_error = std::nan(""); }), HasSubstr("target error"));
   EXPECT_THAT(message([](auto& o) { o.held_out_poses = -1; }), HasSubstr("held-out poses"));
@@ -489,6 +492,65 @@ TEST(Reduce, ReducesHexahedraAndKeepsThem) {
 }
 TEST(Reduce, ReducesQuadraticTetsAndKeepsThem) {
   expect_kept(quadratic_mesh(kuhn_box(4, 1, 1, 0.1)), "mesh.quadratic_tets");
+}
+
+TEST(Reduce, ComparesItsEquilibriaWithTheFullObject) {
+  for (const bool held : {true, false}) {
+    SCOPED_TRACE(held);
+    ReduceOptions options = quick(80);
+    options.modes = held ? 4 : 10;
+    options.full_loads = 5;
+    ReduceReport report;
+    (void)reduce(bar_solid("stvk", held), options, &report);
+    const FullError& full = report.full_error;
+    EXPECT_EQ(full.loads + full.unfinished, 5);
+    EXPECT_GE(full.loads, 4);
+    EXPECT_LE(full.halved, full.loads);
+    EXPECT_NEAR(std::pow(full.total, 2), std::pow(full.outside, 2) + std::pow(full.inside, 2), 1e-12);
+    EXPECT_GT(full.outside, 1e-4);
+    EXPECT_GT(full.inside, 1e-4);
+    EXPECT_LT(full.total, 0.2);
+    EXPECT_GE(full.worst, full.total);
+    EXPECT_LE(full.worst, full.total * std::sqrt(static_cast<double>(full.loads)) * (1 + 1e-12));
+    ReduceReport again;
+    set_num_threads(1);
+    (void)reduce(bar_solid("stvk", held), options, &again);
+    set_num_threads(0);
+    EXPECT_EQ(again.full_error.total, full.total);
+  }
+  ReduceReport report;
+  (void)reduce(bar_solid(), quick(80), &report);
+  EXPECT_EQ(report.full_error.loads, 0);
+  EXPECT_TRUE(std::isnan(report.full_error.total));
+}
+
+// Nothing is outside of a subspace of everything, and all components in it are the full object.
+TEST(Reduce, IsTheFullObjectWhereNothingIsReduced) {
+  const auto full = std::make_shared<const StvkBar>(clamped_bar());
+  DenseBasis everything{full->rest_state().expand(Matrix(full->mass().cwiseSqrt().cwiseInverse().asDiagonal())), {}};
+  ReduceOptions options = quick(full->model().num_components());
+  options.selector = "all";
+  options.full_loads = 3;
+  const auto reduced =
+      reduce(full, std::make_shared<const DenseBasis>(std::move(everything)), AnySelector(options.selector), options);
+  EXPECT_EQ(reduced.report.full_error.loads, 3);
+  EXPECT_LT(reduced.report.full_error.total, 1e-4);
+}
+
+// Linear modes alone hold an object tightest: a bar that bends must stretch in them.
+TEST(Reduce, ForcesThatRelaxBringItNearerToTheFullObject) {
+  for (const std::string law : {"stvk", "neo-hookean"}) {
+    SCOPED_TRACE(law);
+    ReduceOptions options = ReduceOptions::relaxed_derivatives(12);
+    options.subspace = "modal";
+    options.points = 60;
+    ReduceReport relaxed, locked;
+    (void)reduce(bar_solid(law), options, &relaxed);
+    options.relaxed = false;
+    (void)reduce(bar_solid(law), options, &locked);
+    EXPECT_LT(relaxed.full_error.total, 0.6 * locked.full_error.total);
+    EXPECT_NEAR(relaxed.full_error.outside, locked.full_error.outside, 0.2 * locked.full_error.outside);
+  }
 }
 
 TEST(Reduce, TakesAsFewComponentsAsATargetErrorNeeds) {

@@ -35,8 +35,8 @@ struct EquilibriumFittingTest : testing::Test {
                         {.count = count, .amplitudes = {amplitude}})
         .Q;
   }
-  Fitting fitting(const Matrix& Q, Index rank, double scale = 1) const {
-    return {system.shared_model(),     basis, Q,    [&](VectorIn q) { return reduced.stiffness(q); },
+  Fitting fitting(const Matrix& Q, Index rank, double scale = 1, const Matrix& targets = {}) const {
+    return {system.shared_model(),     basis, Q,    targets, [&](VectorIn q) { return reduced.stiffness(q); },
             modes.softest_stiffness(), rank,  scale};
   }
 
@@ -67,6 +67,23 @@ TEST_F(EquilibriumFittingTest, PosesAreInEquilibriumUnderTheirLoads) {
     EXPECT_LT((reduced.force(Q.col(t)) - load).norm(), 1e-4 * load.norm());
     EXPECT_GT((Q.col(t) - linear.col(t)).norm(), 0.02 * Q.col(t).norm()) << "the bend is to be nonlinear";
   }
+}
+
+// Forces of another object, such as the relaxed one: what the rows ask of the components, and measure them by.
+TEST_F(EquilibriumFittingTest, AreFittedToTheTargets) {
+  const Matrix Q = equilibrium_poses(reduced, modes, linear);
+  const Index m = system.model().num_components();
+  const Vector w = Vector::Ones(m) + 0.1 * random_vector(m, 1, 5).cwiseAbs();
+  const System other = with(w);
+  Matrix targets(Q.rows(), Q.cols());
+  for (Index t = 0; t < Q.cols(); ++t) targets.col(t) = other.force(Q.col(t));
+  const Fitting fitted = fitting(Q, basis->dim(), 1, targets);
+  EXPECT_LT(fitted.error(all_components(m), w), 1e-10);
+  EXPECT_GT(fitted.error(all_components(m), Vector::Ones(m)), 0.01);
+  const std::vector<Index> some{1, 4};
+  EXPECT_LT(fitted.restricted_to(some).error(all_components(m), w), 1e-10);
+  EXPECT_LT(fitted.with_tangents_of(other).error(all_components(m), w), 1e-10);
+  EXPECT_THROW(fitting(Q, basis->dim(), 1, targets.leftCols(2)), std::invalid_argument);
 }
 
 // What the rows promise: a small error of the forces moves the equilibrium by as much as they say.
