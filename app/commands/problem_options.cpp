@@ -191,14 +191,16 @@ std::string recipe_of(const ProblemOptions& problem) {
 
 namespace {
 
-/// Modal derivatives, if no other subspace is asked for, with weights fitted to the full object.
-ReduceOptions relaxed_options(const ProblemOptions& problem) {
-  ReduceOptions options = ReduceOptions::relaxed_derivatives(problem.modes.value_or(20));
+/// Weights fitted to the full object: in modal derivatives, of shells in extended modes, unless another subspace is asked for.
+ReduceOptions relaxed_options(const ProblemOptions& problem, const Body& body) {
+  ReduceOptions options = std::holds_alternative<Shell>(body)
+                              ? ReduceOptions::relaxed_extended()
+                              : ReduceOptions::relaxed_derivatives(problem.modes.value_or(20));
   if (problem.subspace) {
     const ReduceOptions plain;
     options.subspace = *problem.subspace;
     options.modes = plain.modes;
-    options.points = plain.points;
+    if (!std::holds_alternative<Shell>(body)) options.points = plain.points;
   } else if (problem.dimension) {
     options.subspace = "derivatives";
   }
@@ -212,7 +214,7 @@ ReduceOptions relaxed_options(const ProblemOptions& problem) {
 ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named, const Body& body) {
   const std::string recipe = recipe_of(problem);
   const bool relaxed = recipe == "relaxed";
-  ReduceOptions options = relaxed             ? relaxed_options(problem)
+  ReduceOptions options = relaxed             ? relaxed_options(problem, body)
                           : recipe == "paper" ? ReduceOptions::paper()
                                               : ReduceOptions{};
   if (problem.subspace) options.subspace = *problem.subspace;

@@ -121,7 +121,7 @@ void declare_problem(CLI::App& command, ProblemOptions& problem) {
   command
       .add_option("--modes", problem.modes,
                   "Vibration modes, rigid ones included [15]; those that derivatives are taken of: flexible ones [15; "
-                  "relaxed: 20]")
+                  "solids, relaxed: 20]")
       ->type_name("R")
       ->check(whole_number())
       ->group(method_group);
@@ -141,7 +141,7 @@ void declare_training(CLI::App& command, ProblemOptions& problem) {
           "--subspace", problem.subspace,
           "extended (modes under all linear maps), modal (modes alone), derivatives (modal derivatives), skinning "
           "(skinning eigenmodes), pca (of --snapshots), or several, as in extended+pca: what they span together "
-          "[extended; relaxed: derivatives]")
+          "[extended; solids, relaxed: derivatives]")
       ->type_name("NAME[:OPTION=VALUE...]")
       ->check(subspace_name())
       ->group(method_group);

@@ -35,6 +35,14 @@ ReduceOptions ReduceOptions::relaxed_derivatives(Index modes) {
   return options;
 }
 
+ReduceOptions ReduceOptions::relaxed_extended(Index modes) {
+  ReduceOptions options = relaxed_derivatives();
+  options.subspace = "extended";
+  options.modes = modes;
+  options.points = 250;
+  return options;
+}
+
 void check(const ReduceOptions& options) {
   require(options.points >= 0, "number of points is " + std::to_string(options.points) +
                                    ", expected at least 1, or 0 for " + "a multiple of the dimension");

@@ -54,9 +54,11 @@ struct ReduceOptions {
   /// diagonal).
   static ReduceOptions paper();
   /// Modal derivatives, and weights fitted to what the full object answers: at the same time a step several times nearer to
-  /// the full object than the default-constructed options (docs/decisions).
+  /// the full object than the default-constructed options (docs/decisions). What the command does for solids.
   /// \param modes  r, from which d and s follow.
   static ReduceOptions relaxed_derivatives(Index modes = 20);
+  /// Extended modes, and such weights: for shells, whose handles may go far beyond what derivatives hold.
+  static ReduceOptions relaxed_extended(Index modes = 15);
 };
 
 /// \throws std::invalid_argument for options out of range.

@@ -147,7 +147,7 @@ TEST_F(ReduceCommandTest, FitsToTheFullObjectByDefault) {
 TEST_F(ReduceCommandTest, ComparesFreeObjectsAndShellsWithTheFullOnes) {
   for (const char* mesh : {"bar:8x2x2", "plate:12x6", "cylinder:12x12"}) {
     SCOPED_TRACE(mesh);
-    const json report = this->report({"reduce", mesh, "-o", "free.supple", "--modes", "6", "--held-out", "0"});
+    const json report = this->report({"reduce", mesh, "-o", "free.supple", "--modes", "10", "--held-out", "0"});
     EXPECT_EQ(report["options"]["recipe"], "relaxed");
     EXPECT_GE(report["full_error"]["loads"], 6);
     EXPECT_LT(report["full_error"]["total"], 0.5);
