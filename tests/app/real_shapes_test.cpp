@@ -67,7 +67,7 @@ TEST_P(RealShapeTest, IsReducedSimulatedAndEdited) {
   const auto file = meshes() / mesh;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no " << file;
   const Outcome made = supple({"reduce", file.string(), "-o", "shape.supple", "--poses", "100", "--points", "200",
-                               "--full-loads", "0", "--held-out", "20", "--json", "-"});
+                               "--recipe", "subspace", "--full-loads", "0", "--held-out", "20", "--json", "-"});
   ASSERT_EQ(made.exit_code, 0) << made.err;  // which may warn of the mesh
   const json reduced = made.json();
   EXPECT_LT(reduced["training_error"], 0.2);
