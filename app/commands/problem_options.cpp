@@ -193,16 +193,13 @@ namespace {
 
 /// Weights fitted to the full object: in modal derivatives, of shells in extended modes, unless another subspace is asked for.
 ReduceOptions relaxed_options(const ProblemOptions& problem, const Body& body) {
-  ReduceOptions options = std::holds_alternative<Shell>(body)
-                              ? ReduceOptions::relaxed_extended()
-                              : ReduceOptions::relaxed_derivatives(problem.modes.value_or(20));
-  if (problem.subspace) {
+  const bool is_shell = std::holds_alternative<Shell>(body);
+  ReduceOptions options =
+      is_shell ? ReduceOptions::relaxed_extended() : ReduceOptions::relaxed_derivatives(problem.modes.value_or(20));
+  if (problem.subspace && !is_shell) {
     const ReduceOptions plain;
-    options.subspace = *problem.subspace;
     options.modes = plain.modes;
-    if (!std::holds_alternative<Shell>(body)) options.points = plain.points;
-  } else if (problem.dimension) {
-    options.subspace = "derivatives";
+    options.points = plain.points;
   }
   // how far the object is to move: what relaxes there are the equilibria
   if (!problem.amplitudes.empty()) options.equilibrium_amplitudes = problem.amplitudes;

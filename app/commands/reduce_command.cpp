@@ -301,8 +301,7 @@ void ReduceCommand::declare(CLI::App& app) {
   command
       .add_option("--points", points,
                   "Largest number of components that stand for all [150; relaxed: four thirds of the dimension, "
-                  "surfaces: eight; "
-                  "1000 with --target-error]")
+                  "surfaces: 250; 1000 with --target-error]")
       ->type_name("S")
       ->check(whole_number())
       ->group(method_group);

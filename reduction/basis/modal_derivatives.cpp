@@ -1,6 +1,7 @@
 #include <core/check.hpp>
 #include <core/parallel.hpp>
 #include <numerics/linear/cholmod_solver.hpp>
+#include <numerics/linear/matrix_sums.hpp>
 #include <numerics/linear/tall_qr.hpp>
 #include <reduction/basis/force_curvature.hpp>
 #include <reduction/basis/modal_derivatives.hpp>
@@ -29,7 +30,7 @@ class StaticResponse {
     // every refinement gains the digits of λ / σ; rounding may leave K slightly indefinite
     for (double sigma = 1e-5 * lambda; sigma < 0.1 * lambda; sigma *= 100) {
       SparseMatrix shifted = K;
-      for (Index j = 0; j < K.cols(); ++j) shifted.coeffRef(j, j) += sigma * mass[j];
+      add_diagonal(shifted, sigma * mass);
       if (cholesky_.factorize(shifted)) return;
     }
     throw SolverError("modal derivatives: K is not positive semi-definite at rest");

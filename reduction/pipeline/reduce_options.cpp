@@ -45,7 +45,7 @@ ReduceOptions ReduceOptions::relaxed_extended(Index modes) {
 
 void check(const ReduceOptions& options) {
   require(options.points >= 0, "number of points is " + std::to_string(options.points) +
-                                   ", expected at least 1, or 0 for " + "a multiple of the dimension");
+                                   ", expected at least 1, or 0 for a multiple of the dimension");
   require(options.target_error >= 0, "target error is negative or not a number, expected 0 or more");
   require(options.equilibria.value_or(0) >= 0, "number of equilibria is negative, expected 0 or more");
   require(options.equilibrium_weight > 0,

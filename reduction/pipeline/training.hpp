@@ -184,10 +184,12 @@ Matrix equilibrium_loads(const ReducedObject<Model, S>& object, PoseOptions pose
                          const ReduceOptions& options) {
   const Index count = object.traits.equilibria;
   std::vector<double> amplitudes = options.equilibrium_amplitudes;
-  const double largest = options.relaxed ? 0.12 : 3 * poses.largest_amplitude();
-  if (amplitudes.empty())
-    for (const double share : {1.0, options.relaxed ? 0.5 : 1.0 / 3, options.relaxed ? 0.25 : 0.1})
-      amplitudes.push_back(share * largest / (object.traits.thin ? 3 : 1));
+  if (amplitudes.empty()) {
+    const double largest = poses.largest_amplitude();
+    amplitudes = options.relaxed ? std::vector{0.12, 0.06, 0.03} : std::vector{3 * largest, largest, 0.3 * largest};
+    if (object.traits.thin)
+      for (double& amplitude : amplitudes) amplitude /= 3;
+  }
   if (options.relaxed) {
     const SubspaceReport& made = object.subspace->report;
     const Index num_modes = made.omega.size() > 0 ? made.omega.size() - made.rigid_modes : object.subspace->dim();

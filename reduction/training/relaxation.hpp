@@ -3,6 +3,7 @@
 /// equilibria are judged by.
 
 #include <numerics/linear/cholmod_solver.hpp>
+#include <numerics/linear/matrix_sums.hpp>
 #include <numerics/optimize/bfgs_memory.hpp>
 #include <physics/system/full_system.hpp>
 #include <reduction/subspace/subspace_columns.hpp>
@@ -32,7 +33,7 @@ struct FullStates {
 /// condensation, Hollkamp & Gordon 2008).
 ///
 /// By the L-BFGS method, eight states at once, whose first inverse Hessian is R K⁻¹ Rᵀ: one factorisation at rest under
-/// the rotations of the nodes at each iterate (stiffness warping, Müller et al. 2002). None is factorised for deformed
+/// the rotations of the nodes at each eighth iterate (stiffness warping, Müller et al. 2002). None is factorised for deformed
 /// states. Equal bits for any num_threads().
 template <ForceModel Model, Subspace S>
 class Relaxation {
@@ -50,7 +51,7 @@ class Relaxation {
     // motions without energy that the subspace lacks show as a factorisation that fails
     for (const double shift : {0.5 * spring_, 1e-3 * modes.softest_stiffness()}) {
       SparseMatrix K = system_->rest_stiffness();
-      for (Index j = 0; shift > 0 && j < K.cols(); ++j) K.coeffRef(j, j) += shift * system_->mass()[j];
+      add_diagonal(K, shift * system_->mass());
       if (cholesky_.factorize(K)) return;
     }
     throw SolverError("relaxation: K is not positive semi-definite at rest");
