@@ -67,11 +67,14 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
   if (scene.integrator) options.integrator = *scene.integrator;
   check_integrator(options.integrator);
   options.steps.damping = scene.damping.value_or(damping(model.body));
-  options.steps.solver = scene.solver.value_or(command.full ? NonlinearSolver(Newton{}) : NonlinearSolver(Bfgs{}));
-  if (command.full && !std::holds_alternative<Newton>(options.steps.solver)) {
+  const NonlinearSolver usual = command.full ? NonlinearSolver(WarpedBfgs{}) : NonlinearSolver(Bfgs{});
+  options.steps.solver = scene.solver.value_or(usual);
+  if (!is_step_solver_for(command.full, options.steps.solver)) {
     if (command.solver)
-      throw InputError("--solver " + *command.solver + " is for reduced systems; --full runs with newton");
-    options.steps.solver = Newton{};
+      throw InputError("--solver " + *command.solver + " is for " +
+                       (command.full ? "reduced systems; --full runs with warped-bfgs or newton"
+                                     : "full systems (--full); reduced ones run with bfgs, broyden or newton"));
+    options.steps.solver = usual;
   }
   if (scene.tolerance) options.steps.tolerance = *scene.tolerance;
   if (scene.max_iterations) options.steps.max_iterations = *scene.max_iterations;
@@ -288,13 +291,13 @@ void SimulateCommand::declare(CLI::App& app) {
   command
       .add_option("--scene", scene, "Loads and springs over time, see docs/scene.md; without: pulled, then released")
       ->type_name("FILE.json");
-  command.add_flag("--full", full, "Run the unreduced system instead: all nodes, Newton's method");
+  command.add_flag("--full", full, "Run the unreduced system instead: all nodes");
   command.add_option("--time", time, "Duration [s], instead of the scene's")->type_name("T");
   command.add_option("--step", step, "Time step [s], instead of the scene's")->type_name("H");
   command.add_option("--integrator", integrator, "How it moves in time, see below [newmark]")
       ->type_name("NAME[:OPTION=VALUE...]")
       ->check(known_in(integrators()));
-  command.add_option("--solver", solver, "Nonlinear solver [bfgs; full: newton]")
+  command.add_option("--solver", solver, "Nonlinear solver [bfgs; full: warped-bfgs]")
       ->check(CLI::IsMember(solver_names(step_solvers)));
   command.add_option("--tolerance", tolerance, "Relative residual of a step [1e-6]")
       ->type_name("SHARE")

@@ -18,7 +18,11 @@ struct NamedSolver {
 
 /// Those of time steps, which are close to linear.
 inline const std::array step_solvers{NamedSolver{"newton", Newton{}}, NamedSolver{"bfgs", Bfgs{}},
-                                     NamedSolver{"broyden", Broyden{}}};
+                                     NamedSolver{"broyden", Broyden{}}, NamedSolver{"warped-bfgs", WarpedBfgs{}}};
+/// Whether one of them is for a full system, or for a reduced one.
+inline bool is_step_solver_for(bool full, const NonlinearSolver& solver) {
+  return std::holds_alternative<Newton>(solver) || std::holds_alternative<WarpedBfgs>(solver) == full;
+}
 /// Those of edits, which go far.
 inline const std::array static_solvers{NamedSolver{"newton", Newton{}}, NamedSolver{"bfgs", LineSearchBfgs{}},
                                        NamedSolver{"nlopt", Nlopt{}}};

@@ -6,12 +6,28 @@
 
 namespace supple {
 
+/// R A⁻¹ Rᵀ of what a solver holds, under rotations of the unknowns.
+template <typename Solver>
+struct TurnedSolver {
+  const Solver& solver;
+  BlockRotations frames = {};
+
+  Vector solve(Vector g) const {
+    frames.turn_back(g);
+    Vector x = solver.solve(g);
+    frames.turn(x);
+    return x;
+  }
+};
+
 /// Minimises by BFGS steps whose lengths are searched: for statics, far from the minimum (the paper's choice for reduced
-/// systems).
+/// systems). The first inverse Hessian turns with the unknowns where the objective tells how they do (stiffness warping,
+/// Müller et al. 2002).
 struct LineSearchBfgs {
   /// After so many steps that are in the memory the Hessian is computed and factorised afresh, shifted if it is not
   /// definite; 0: never, as the paper does. In large motions the Hessian at rest is a poor start.
   Index refresh_after = 0;
+  Index memory = BfgsMemory::unlimited;  ///< steps kept
 
   /// Improves u until the residual ‖g‖ / scale is at most the tolerance. The matrix never appears: steps are kept and
   /// applied to what `solver` holds, O(k d) after k steps beside one solve (Dennis & Schnabel 1987, Sec. 9; Nocedal &
@@ -22,7 +38,8 @@ struct LineSearchBfgs {
   SolveReport operator()(O& objective, SpdSolver<typename O::MatrixType>& solver, Vector& u,
                          const SolveLimits& limits = {}) const {
     SolveReport report;
-    BfgsMemory memory;
+    BfgsMemory steps(memory);
+    TurnedSolver<SpdSolver<typename O::MatrixType>> inverse{solver};
     ShiftedHessian<typename O::MatrixType> hessian;
     Vector g(u.size()), g_trial(u.size()), trial(u.size());
     objective.gradient(u, g);
@@ -36,18 +53,20 @@ struct LineSearchBfgs {
       if (!std::isfinite(report.residual) || !std::isfinite(value)) return finish(Status::NotFinite);
       if (report.residual <= limits.tolerance) return finish(Status::Converged);
       if (report.iterations == limits.max_iterations) return finish(Status::MaxIterations);
+      if (report.iterations % turned_every == 0 && report.tangents == 0) inverse.frames = frames_of(objective, u);
       ++report.iterations;
-      if (refresh_after > 0 && memory.size() >= refresh_after) {
+      if (refresh_after > 0 && steps.size() >= refresh_after) {
         if (!hessian.factorize(objective, solver, u)) return finish(Status::Stagnated);
-        memory.clear();
+        inverse.frames = {};  // it is the Hessian here
+        steps.clear();
         ++report.tangents;
       }
 
-      Vector step = -memory.inverse_times(solver, g);
+      Vector step = -steps.inverse_times(inverse, g);
       double slope = g.dot(step);
       if (!(slope < 0)) {  // rounding has spoilt the memory
-        memory.clear();
-        step = -solver.solve(g);
+        steps.clear();
+        step = -inverse.solve(g);
         slope = g.dot(step);
         if (!(slope < 0)) return finish(Status::Stagnated);
       }
@@ -71,20 +90,23 @@ struct LineSearchBfgs {
         if (!found) t = std::isfinite(high) ? 0.5 * (low + high) : 2 * t;
       }
       if (!found) {
-        if (memory.size() == 0) {
+        if (steps.size() == 0) {
           objective.gradient(u, g);
           return finish(Status::Stagnated);
         }
-        memory.clear();  // once more along the preconditioned gradient
+        steps.clear();  // once more along the preconditioned gradient
         continue;
       }
       scale = objective.scale(trial);
       value = value_trial;
-      memory.add(trial - u, g_trial - g);
+      steps.add(trial - u, g_trial - g);
       u.swap(trial);
       g.swap(g_trial);
     }
   }
+
+ private:
+  static constexpr Index turned_every = 8;  // iterations; frames hardly change in between
 };
 
 }  // namespace supple

@@ -2,6 +2,7 @@
 /// \file Objectives and equations as nonlinear solvers see them, limits and reports of a solve.
 
 #include <core/report.hpp>
+#include <numerics/linear/block_rotations.hpp>
 
 #include <concepts>
 
@@ -26,6 +27,16 @@ bool has_value(const O& objective) {
     return objective.has_value();
   else
     return true;
+}
+
+/// How the unknowns at u have turned since rest, in blocks of three, which an objective may tell by `frames(u)`: its Hessian
+/// is then near R H(0) Rᵀ. Nothing has turned where it does not.
+template <SmoothObjective O>
+BlockRotations frames_of(const O& objective, VectorIn u) {
+  if constexpr (requires { objective.frames(u); })
+    return objective.frames(u);
+  else
+    return {};
 }
 
 /// r(u) = 0 with the Jacobian J = ∂r/∂u, for forces that need not have a potential; `scale` as above.

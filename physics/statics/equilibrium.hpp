@@ -45,6 +45,7 @@ class Equilibrium {
   }
   double scale(VectorIn) const { return scale_; }
   const Vector& metric() const { return system_.mass(); }
+  BlockRotations frames(VectorIn u) const { return frames_of(system_, u); }
 
  private:
   const System& system_;

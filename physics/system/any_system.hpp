@@ -1,10 +1,12 @@
 #pragma once
 /// \file System of an object in ℝ³, full or reduced, its type erased: a value.
 
+#include <numerics/linear/block_rotations.hpp>
 #include <physics/system/dynamical_system.hpp>
 
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace supple {
 
@@ -53,6 +55,8 @@ class AnySystem {
   Vector expand(VectorIn u) const { return system_->expand(u); }
   /// Displacement of a node [m].
   Point displacement(VectorIn u, Index node) const { return system_->displacement(u, node); }
+  /// How its nodes have turned since rest, of each of k states, dim × k; of full systems, others say that nothing has.
+  std::vector<BlockRotations> frames(MatrixIn U) const { return system_->frames(U); }
 
  private:
   class Interface {
@@ -68,6 +72,7 @@ class AnySystem {
     virtual Index num_nodes() const = 0;
     virtual Vector expand(VectorIn u) const = 0;
     virtual Point displacement(VectorIn u, Index node) const = 0;
+    virtual std::vector<BlockRotations> frames(MatrixIn U) const = 0;
   };
   template <typename System>
   class Of final : public Interface {
@@ -83,6 +88,12 @@ class AnySystem {
     Index num_nodes() const override { return own_->num_nodes(); }
     Vector expand(VectorIn u) const override { return own_->expand(u); }
     Point displacement(VectorIn u, Index node) const override { return own_->displacement(u, node); }
+    std::vector<BlockRotations> frames(MatrixIn U) const override {
+      if constexpr (requires { own_->frames(U); })
+        return own_->frames(U);
+      else
+        return std::vector<BlockRotations>(U.cols());
+    }
 
    private:
     std::shared_ptr<const System> own_;

@@ -3,11 +3,13 @@
 /// alike.
 
 #include <core/types.hpp>
+#include <numerics/linear/block_rotations.hpp>
 #include <physics/load/loads.hpp>
 #include <physics/load/system_load.hpp>
 #include <physics/model/force_model.hpp>
 
 #include <concepts>
+#include <utility>
 
 namespace supple {
 
@@ -34,5 +36,15 @@ concept DynamicalSystem = SemidiscreteSystem<S> && has_symmetric_tangent<S>() &&
   { system.energy(u) } -> std::convertible_to<double>;                            // E [J]
   { system.project(loads) } -> std::same_as<SystemLoad<typename S::MatrixType>>;  // loads on nodes → on unknowns
 };
+
+/// How the unknowns of a state have turned since rest, in blocks of three, where a system tells by frames(): the tangent
+/// there is near R K(0) Rᵀ. Nothing has turned where it does not.
+template <DynamicalSystem S>
+BlockRotations frames_of(const S& system, VectorIn u) {
+  if constexpr (requires { system.frames(u); })
+    return std::move(system.frames(u).front());
+  else
+    return {};
+}
 
 }  // namespace supple

@@ -175,7 +175,9 @@ class FullSystem {
   /// How the neighbourhood of each free node has turned since rest, in each of k states, dim × k. The tangent at u is near
   /// R K(0) Rᵀ, which makes the factor of K(0) a good preconditioner in large deformations (stiffness warping, Müller et al.
   /// 2002).
-  std::vector<BlockRotations> frames(MatrixIn U) const requires requires(const Model& model) { model.rest_positions(); }
+  std::vector<BlockRotations> frames(MatrixIn U) const requires(node_dim == 3) && requires(const Model& model) {
+    model.rest_positions();
+  }
   {
     return nodal_frames(model_->rest_positions(), rest_state().expand(U), stencils_, Model::stencil_size, incidence_,
                         numbering_);

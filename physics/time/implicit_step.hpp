@@ -77,6 +77,7 @@ class StepObjective {
   }
   double scale(VectorIn) const { return scale_; }
   const Vector& metric() const { return system_.mass(); }
+  BlockRotations frames(VectorIn u) const { return frames_of(system_, u); }
 
   bool damped() const { return damping_.alpha != 0 || damping_.beta != 0; }
   /// D v.

@@ -8,6 +8,7 @@
 
 #include <Eigen/SVD>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -54,7 +55,7 @@ class StaticResponse {
       X = X_next;
       const bool slow = worst > 0.5 * residual;
       residual = worst;
-      if (slow || residual <= 1e-2 * tolerance) break;
+      if (slow || residual <= tolerance) break;
     }
     return {std::move(X), residual};
   }
@@ -78,13 +79,26 @@ class StaticResponse {
   CholmodSolver cholesky_;
 };
 
+/// (i, j), i ≤ j, in order: of all pairs of these modes, or of those `count` whose product of eigenvalues is smallest.
+std::vector<std::array<Index, 2>> softest_pairs(VectorIn omega, Index first, Index count) {
+  std::vector<std::array<Index, 2>> pairs;
+  for (Index i = first; i < omega.size(); ++i)
+    for (Index j = i; j < omega.size(); ++j) pairs.push_back({i, j});
+  if (count == 0 || count >= static_cast<Index>(pairs.size())) return pairs;
+  std::ranges::stable_sort(pairs, {}, [&](const auto& pair) { return omega[pair[0]] * omega[pair[1]]; });
+  pairs.resize(count);
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
 }  // namespace
 
 ModalDerivativeVectors modal_derivatives(const RestState& object, const VibrationModes& modes, double tolerance,
-                                         const Progress& progress) {
+                                         const Progress& progress, Index num_pairs) {
   require_size("modes.vectors", modes.vectors.rows(), 3 * object.numbering.num_nodes());
   const Index first = modes.num_zero, r = modes.vectors.cols() - first;
   require(r > 0, "modal derivatives: no mode has energy");
+  require(num_pairs >= 0, "number of pairs is " + std::to_string(num_pairs) + ", expected 0 or more");
   tell(progress, "modal derivatives", 0);
   const ForceCurvature H(object);
   Matrix phi = object.restrict(modes.vectors.rightCols(r));
@@ -93,8 +107,7 @@ ModalDerivativeVectors modal_derivatives(const RestState& object, const Vibratio
   const Matrix own = H.squares(phi);  // H(φ_i, φ_i)
 
   ModalDerivativeVectors result;
-  for (Index i = 0; i < r; ++i)
-    for (Index j = i; j < r; ++j) result.pairs.push_back({first + i, first + j});
+  result.pairs = softest_pairs(modes.omega, first, num_pairs);
   const Index count = static_cast<Index>(result.pairs.size());
   result.vectors.resize(modes.vectors.rows(), count);
   const StaticResponse respond(object.K, object.mass, object.restrict(modes.vectors.leftCols(first)),
@@ -134,10 +147,11 @@ DenseBasis ModalDerivatives::operator()(const RestState& object) const {
               " rigid ones, but the system has only " + std::to_string(object.mass.size()) + " unknowns");
   const VibrationModes modes =
       vibration_modes(object, {parts.num_rigid_modes() + num_modes, tolerance, seed, progress});
-  const ModalDerivativeVectors derivatives = modal_derivatives(object, modes, tolerance, progress);
+  const ModalDerivativeVectors derivatives =
+      modal_derivatives(object, modes, derivative_tolerance, progress, num_pairs);
   const Vector mass = object.mass_of_rows();
   SubspaceReport report = modes.report();
-  if (derivatives.residual > tolerance)
+  if (derivatives.residual > derivative_tolerance)
     report.notes.push_back("modal derivatives have a relative residual of " +
                            std::to_string(1e6 * derivatives.residual) + "e-6, more than was asked for");
 

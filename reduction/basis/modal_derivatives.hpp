@@ -18,11 +18,12 @@ struct ModalDerivativeVectors {
   double residual = 0;                      ///< largest ‖K θ + H‖ / ‖H‖
 };
 
-/// The derivatives of all modes with energy. One factorisation, r (r + 1) / 2 solves with refinement and
-/// 2 r (r + 1) evaluations of the force; equal bits for any num_threads().
+/// The derivatives of all modes with energy. One factorisation, and for each of r (r + 1) / 2 pairs a solve with refinement
+/// and four evaluations of the force; equal bits for any num_threads().
+/// \param num_pairs  only of so many, those with the smallest λ_i λ_j; 0: of all.
 /// \throws SolverError if K is not positive semi-definite, or a residual cannot be made small.
 ModalDerivativeVectors modal_derivatives(const RestState& object, const VibrationModes& modes, double tolerance = 1e-8,
-                                         const Progress& progress = {});
+                                         const Progress& progress = {}, Index num_pairs = 0);
 
 /// Linear modes and their modal derivatives (Idelsohn & Cardona 1985; Barbič & James 2005): r modes give up
 /// to r (r + 3) / 2 dimensions, free parts six more each.
@@ -33,8 +34,10 @@ struct ModalDerivatives {
   /// the spread of a response to loads that excite low frequencies most. Subspaces of growing d are nested.
   Index dimension = 0;
   Index num_derivatives = 0;   ///< where `dimension` is 0: of these components, whatever else there is; 0: all
+  Index num_pairs = 0;         ///< derivatives computed: of the pairs of modes with the largest weights; 0: of all
   bool affine_fields = false;  ///< free parts bring all 12 affine motions instead of the 6 rigid ones
-  double tolerance = 1e-8;     ///< of modes and derivatives, relative residuals
+  double tolerance = 1e-8;     ///< of modes, relative residuals
+  double derivative_tolerance = 1e-5;  ///< of derivatives, ‖K θ + H‖ / ‖H‖
   std::uint64_t seed = 1;
   Progress progress = {};
 

@@ -19,7 +19,6 @@
 
 #include <memory>
 #include <optional>
-#include <type_traits>
 
 namespace supple {
 
@@ -68,28 +67,19 @@ struct ReducedObject {
   Vector softest_eigenvalues(const Matrix& stiffness, Index count = 5) const;
 };
 
-/// The Relaxation of an object, nothing for forces without a potential.
-template <ForceModel F, Subspace S>
-struct NoRelaxation {};
-template <ForceModel F, Subspace S>
-using RelaxationOf =
-    typename std::conditional_t<PotentialModel<F> && has_symmetric_tangent<F>(), std::type_identity<Relaxation<F, S>>,
-                                std::type_identity<NoRelaxation<F, S>>>::type;
-
 /// What a selection is made for, and what it is judged by: the object and what came out of the stages of train().
 template <ForceModel F, Subspace S>
 struct Training {
   using Model = F;
   using Fitting = ForceFitting<Model, S>;
   using Equilibria = EquilibriumFitting<Model, S>;
-  using Relaxing = RelaxationOf<Model, S>;
 
   ReducedObject<F, S> object;
   TrainingPoses poses;
   Fitting fitting;                                   ///< on the training poses
   std::vector<std::pair<double, Fitting>> held_out;  ///< on fresh poses at these shares of the largest amplitude
   std::optional<Equilibria> equilibria = {};
-  std::shared_ptr<const Relaxing> relaxation = {};  ///< if forces relaxed
+  std::shared_ptr<const Relaxation> relaxation = {};  ///< if forces relaxed
 
   /// The equilibria by its own tangents; there must be some.
   Equilibria equilibria_of(const WorkingComponents& working) const {
@@ -153,9 +143,9 @@ TrainingPoses training_poses(const ReducedObject<Model, S>& object, const PoseOp
 
 /// Null for forces without a potential.
 template <ForceModel F, Subspace S>
-std::shared_ptr<const RelaxationOf<F, S>> relaxation_of(const ReducedObject<F, S>& object) {
+std::shared_ptr<const Relaxation> relaxation_of(const ReducedObject<F, S>& object) {
   if constexpr (PotentialModel<F> && has_symmetric_tangent<F>())
-    return std::make_shared<const Relaxation<F, S>>(object.system, object.subspace, object.modes);
+    return std::make_shared<const Relaxation>(object.system, object.subspace, object.modes);
   else
     return nullptr;
 }
@@ -208,7 +198,7 @@ template <ForceModel Model, Subspace S>
 EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& object,
                                             const ForceFitting<Model, S>& fitting, const PoseOptions& poses,
                                             const RunSeeds& seeds, const ReduceOptions& options,
-                                            const RelaxationOf<Model, S>* relaxation) {
+                                            const Relaxation* relaxation) {
   if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
     const auto& model = object.system->shared_model();
     const ObjectTraits& traits = object.traits;

@@ -302,6 +302,7 @@ TEST_F(SimulateCommandTest, RefusesBadScenesInOneLineAndLeavesNothing) {
   expect_refusal({"simulate", "bar.supple", "--track", "-1", "-o", "run"}, {"track"});
   expect_refusal({"simulate", "bar.supple", "--every", "0", "-o", "run"}, {"every"});
   expect_refusal({"simulate", "bar.supple", "--full", "--solver", "broyden", "-o", "run"}, {"newton"});
+  expect_refusal({"simulate", "bar.supple", "--solver", "warped-bfgs", "-o", "run"}, {"--full", "broyden"});
   expect_refusal({"simulate", "bar.supple", "--precision", "half", "-o", "run"}, {"--precision", "single"});
   expect_refusal({"simulate", "bar.supple", "--full", "--precision", "single", "-o", "run"}, {"--precision"});
   expect_refusal({"simulate", "bar.supple", "-o", "bar.supple"}, {"bar.supple"});

@@ -46,6 +46,52 @@ TEST(StaticSolver, MethodsAgreeOnAnEquilibrium) {
   }
 }
 
+/// A system that does not tell how its nodes have turned.
+struct WithoutFrames : System {
+  std::vector<BlockRotations> frames(MatrixIn) const = delete;
+};
+
+// Turned about its clamped end by a half circle's worth of bending, a slender bar hardly strains: its Hessian is that at rest,
+// turned.
+TEST(StaticSolver, AHessianThatTurnsWithTheNodesSavesIterations) {
+  const TetMesh mesh = kuhn_box(16, 1, 1, 0.1);
+  const System system(
+      TetElasticity<StVenantKirchhoff>(mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.3})),
+      lumped_mass(mesh, 1000.0), nodes_where(mesh, [](const Point& x) { return x[0] < 0.05; }));
+  const SystemLoad<SparseMatrix> load = system.project({.gravity = {0, -0.6, 0}});
+  const auto solve = [&](const auto& some, const NonlinearSolver& method, Vector& u) {
+    StaticSolver solver(some, {.solver = method, .tolerance = 1e-8});
+    u = Vector::Zero(system.dim());
+    return solver.solve(load, u);
+  };
+  Vector u, turned, unturned;
+  ASSERT_EQ(solve(system, Newton{}, u).status, Status::Converged);
+  ASSERT_GT(u.lpNorm<Eigen::Infinity>(), 0.5) << "a third of its length";
+  const SolveReport warped = solve(system, LineSearchBfgs{}, turned);
+  EXPECT_EQ(warped.status, Status::Converged);
+  EXPECT_EQ(warped.tangents, 0);
+  EXPECT_TRUE(is_near(turned, u, 1e-5 * u.norm()));
+  EXPECT_LT(2 * warped.iterations, solve(WithoutFrames{system}, LineSearchBfgs{}, unturned).iterations);
+}
+
+TEST(StaticSolver, NewtonsMethodGoesOnWhereWarpedStepsDoNotSuffice) {
+  const PulledBar bar;
+  Vector expected = Vector::Zero(bar.system.dim()), u = expected;
+  StaticSolver newton(bar.system, {.tolerance = 1e-9});
+  const SolveReport alone = newton.solve(bar.load(0.13), expected);
+  StaticSolver warped(bar.system, {.solver = WarpedBfgs{}, .tolerance = 1e-9, .max_iterations = alone.iterations});
+  const SolveReport report = warped.solve(bar.load(0.13), u);
+  EXPECT_EQ(report.status, Status::Converged);
+  EXPECT_GT(report.tangents, 0);
+  EXPECT_GT(report.iterations, alone.iterations);
+  EXPECT_TRUE(is_near(u, expected, 1e-6 * expected.norm()));
+  // and the next solve begins at rest again
+  StaticSolver patient(bar.system, {.solver = WarpedBfgs{}, .tolerance = 1e-9});
+  u.setZero();
+  EXPECT_EQ(patient.solve(bar.load(0.13), u).tangents, 0);
+  EXPECT_TRUE(is_near(u, expected, 1e-6 * expected.norm()));
+}
+
 TEST(StaticSolver, StartsFromTheLastEquilibriumAsLoadsMove) {
   const PulledBar bar;
   StaticSolver bfgs(bar.system, {.solver = LineSearchBfgs{}});

@@ -59,7 +59,7 @@ State run(const System& system, State state, const SystemLoad<SparseMatrix>& loa
   return state;
 }
 
-const std::array<NonlinearSolver, 3> every_solver{Newton{}, Bfgs{}, Broyden{}};
+const std::array<NonlinearSolver, 4> every_solver{Newton{}, Bfgs{}, Broyden{}, WarpedBfgs{}};
 
 /// log₂ of the ratio of errors between step sizes h, h/2 and h/4.
 template <typename Run>
@@ -268,7 +268,8 @@ TEST(Newmark, SolversTakeTheSameTrajectory) {
   const SystemLoad<SparseMatrix> load = system.project({.gravity = {0, 0, -9.81}, .forces = {}, .springs = {}});
   StepOptions options{.tolerance = 1e-9};
   const State newton = run(system, swinging(system), load, 0.2, 20, options);
-  for (const NonlinearSolver& solver : {NonlinearSolver(Bfgs{}), NonlinearSolver(Broyden{})}) {
+  for (const NonlinearSolver& solver :
+       {NonlinearSolver(Bfgs{}), NonlinearSolver(Broyden{}), NonlinearSolver(WarpedBfgs{})}) {
     options.solver = solver;
     const State other = run(system, swinging(system), load, 0.2, 20, options);
     EXPECT_TRUE(is_near(other.u, newton.u, 1e-6));
@@ -307,7 +308,8 @@ TEST(Newmark, AllSolversSurviveASpringThatPullsASingleNodeHard) {
       {.gravity = {0, 0, -9.81}, .forces = {}, .springs = {{mesh.num_nodes() - 1, 1000, {0.05, 0.1, 0}}}});
   StepOptions options{.tolerance = 1e-8};
   const State newton = run(system, State::at_rest(system.dim()), load, 0.4, 8, options);
-  for (const NonlinearSolver& solver : {NonlinearSolver(Bfgs{}), NonlinearSolver(Broyden{})}) {
+  for (const NonlinearSolver& solver :
+       {NonlinearSolver(Bfgs{}), NonlinearSolver(Broyden{}), NonlinearSolver(WarpedBfgs{})}) {
     options.solver = solver;
     const State other = run(system, State::at_rest(system.dim()), load, 0.4, 8, options);
     EXPECT_TRUE(is_near(other.u, newton.u, 1e-5));

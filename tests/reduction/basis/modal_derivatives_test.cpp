@@ -262,15 +262,39 @@ TEST(ModalDerivatives, ContainModesAndDerivativesAndAreNested) {
     const Index rigid = system.numbering().num_free() < system.num_nodes() ? 0 : 6;
     const VibrationModes modes = vibration_modes(system, {.num_modes = rigid + 5});
     const Matrix theta = modal_derivatives(system.rest_state(), modes).vectors;
-    const DenseBasis all = ModalDerivatives{.num_modes = 5}(system);
+    const DenseBasis all = ModalDerivatives{.num_modes = 5, .derivative_tolerance = 1e-9}(system);
     EXPECT_LT(outside(all, system, modes.vectors), 1e-10);
     EXPECT_LT(outside(all, system, theta), 1e-8);
     EXPECT_EQ(all.report.singular_values.size(), 15);
-    const DenseBasis some = ModalDerivatives{.num_modes = 5, .dimension = rigid + 12}(system);
+    const DenseBasis some =
+        ModalDerivatives{.num_modes = 5, .dimension = rigid + 12, .derivative_tolerance = 1e-9}(system);
     EXPECT_LT(outside(some, system, modes.vectors), 1e-10);
     EXPECT_LT(outside(some, system, Matrix(theta.col(0))), 1e-2) << "weighted most";
     EXPECT_TRUE(is_same(some.W, all.W.leftCols(rigid + 12)));
   }
+}
+
+TEST(ModalDerivatives, OfFewPairsAreThoseOfTheSoftestModes) {
+  const StvkBar system = free_bar();
+  const VibrationModes modes = vibration_modes(system, {.num_modes = 6 + 5});
+  const ModalDerivativeVectors all = modal_derivatives(system.rest_state(), modes),
+                               few = modal_derivatives(system.rest_state(), modes, 1e-8, {}, 7);
+  ASSERT_EQ(few.pairs.size(), 7u);
+  const auto product = [&](const std::array<Index, 2>& pair) { return modes.omega[pair[0]] * modes.omega[pair[1]]; };
+  double stiffest = 0;
+  for (const auto& pair : few.pairs) stiffest = std::max(stiffest, product(pair));
+  for (std::size_t k = 0; k < all.pairs.size(); ++k) {
+    const auto found = std::ranges::find(few.pairs, all.pairs[k]);
+    if (found == few.pairs.end()) {
+      EXPECT_GE(product(all.pairs[k]), stiffest);
+      continue;
+    }
+    const Vector theta = all.vectors.col(k);
+    EXPECT_TRUE(is_near(Vector(few.vectors.col(found - few.pairs.begin())), theta, 1e-6 * theta.norm()));
+  }
+  EXPECT_EQ((ModalDerivatives{.num_modes = 5, .num_pairs = 7}(system).dim()), 6 + 5 + 7);
+  EXPECT_EQ((ModalDerivatives{.num_modes = 5, .num_pairs = 99}(system).dim()), 6 + 5 + 15);
+  EXPECT_THROW((void)(ModalDerivatives{.num_modes = 5, .num_pairs = -1}(system)), std::invalid_argument);
 }
 
 TEST(ModalDerivatives, WithAffineFieldsContainAllAffineMotions) {

@@ -42,7 +42,7 @@ struct RelaxedBar {
   std::shared_ptr<const StvkBar> system;
   std::shared_ptr<const S> basis;
   ReducedModes modes;
-  Relaxation<BarModel, S> relaxation;
+  Relaxation relaxation;
 };
 
 RelaxedBar<DenseBasis> modal_bar() {
