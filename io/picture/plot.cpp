@@ -43,6 +43,13 @@ std::string gnuplot_string(std::string_view words) {
   return result + "'";
 }
 
+/// A text in double quotes, as data blocks take it; what would end it or mean something else there is left out.
+std::string data_string(std::string_view words) {
+  std::string result = "\"";
+  for (const char c : words) result += c == '"' || c == '\\' || static_cast<unsigned char>(c) < 32 ? ' ' : c;
+  return result + "\"";
+}
+
 /// Runs a program on `input`, collecting what it writes. Files instead of pipes: nobody waits for anybody.
 struct Run {
   int error = 0;  // of starting the program
@@ -110,6 +117,8 @@ void check(const Plot& plot) {
   bool any = false;
   for (const PlotSeries& series : plot.series) {
     require_size("y of series '" + series.name + "'", series.y.size(), series.x.size());
+    if (!series.labels.empty())
+      require_size("labels of series '" + series.name + "'", static_cast<Index>(series.labels.size()), series.x.size());
     for (Index k = 0; k < series.x.size(); ++k) any = any || shown(plot, series.x[k], series.y[k]);
   }
   require(any, "a plot has no point that can be shown");
@@ -220,12 +229,21 @@ std::string script(const Plot& plot, const std::string& terminal) {
     const PlotSeries& series = plot.series[k];
     const std::string block = "$series" + std::to_string(k);
     commands += block + " << END\n";
-    for (Index i = 0; i < series.x.size(); ++i)
+    for (Index i = 0; i < series.x.size(); ++i) {
       // An empty line interrupts the curve.
-      commands += shown(plot, series.x[i], series.y[i]) ? text(series.x[i]) + " " + text(series.y[i]) + "\n" : "\n";
+      if (shown(plot, series.x[i], series.y[i])) {
+        commands += text(series.x[i]) + " " + text(series.y[i]);
+        if (!series.labels.empty()) commands += " " + data_string(series.labels[static_cast<std::size_t>(i)]);
+      }
+      commands += "\n";
+    }
     commands += "END\n";
     curves += (k > 0 ? ", " : "") + block + " using 1:2 " + style_commands(series.style, k) +
               (series.name.empty() ? " notitle" : " title " + gnuplot_string(series.name) + " noenhanced");
+    if (!series.labels.empty())
+      curves += ", " + block +
+                " using 1:2:3 with labels left offset 0.7,0.7 noenhanced font 'Helvetica,12' textcolor rgb '#404040' "
+                "notitle";
   }
   return commands + "plot " + curves + "\n";
 }

@@ -31,6 +31,7 @@ struct PlotSeries {
   std::string name;  ///< in the legend; empty: not there
   Vector x, y;       ///< of one size; a NaN interrupts the line, and so does what a log axis cannot show
   PlotStyle style = PlotStyle::Line;
+  std::vector<std::string> labels = {};  ///< a few characters beside each point; empty: none
 };
 
 struct Plot {
@@ -41,7 +42,7 @@ struct Plot {
 };
 
 /// Draws to `path`: .svg or .png by its extension. Old files are replaced in one step.
-/// \throws std::invalid_argument if there is no series, x and y differ in size, nothing can be shown, an end
+/// \throws std::invalid_argument if there is no series, x, y and labels differ in size, nothing can be shown, an end
 /// of a log axis is not positive, or a picture is smaller than 100 or larger than 10 000 pixels; InputError
 /// if the extension is another, gnuplot is not installed or fails (with its message), or the file cannot be
 /// written.

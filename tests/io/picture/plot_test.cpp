@@ -46,6 +46,19 @@ TEST_F(PlotTest, SvgShowsTitleLabelsAndLegend) {
   EXPECT_THAT(text, HasSubstr("</svg>"));
 }
 
+TEST_F(PlotTest, ShowsLabelsBesidePointsWhateverIsInThem) {
+  SKIP_WITHOUT_GNUPLOT;
+  plot.series[0].style = PlotStyle::Markers;
+  plot.series[0].labels = {"90, 120", "x_1^2", "it's", "a \"quoted\\ one", ""};
+  plot.series[0].y[1] = std::numeric_limits<double>::quiet_NaN();  // a point that is not there has no label
+  const std::string text = svg();
+  EXPECT_THAT(text, HasSubstr("90, 120"));
+  EXPECT_THAT(text, Not(HasSubstr("x_1")));
+  EXPECT_THAT(text, HasSubstr("quoted"));
+  plot.series[0].labels.pop_back();
+  EXPECT_THAT([&] { svg(); }, ThrowsMessage<std::invalid_argument>(HasSubstr("labels of series 'a'")));
+}
+
 TEST_F(PlotTest, LogAxesOfLessThanTwoPowersOfTenHaveMoreNumbersThanThose) {
   SKIP_WITHOUT_GNUPLOT;
   plot.y.scale = Scale::Log;
