@@ -151,6 +151,13 @@ std::vector<std::string> parts_of_subspace(const std::string& name) {
 
 void check(const SubspaceChoice& choice) {
   const std::vector<std::string> parts = parts_of_subspace(choice.name);
+  for (const Choice& part : choices_of(choice.name)) {
+    const std::vector<OptionInfo>& known = subspaces().at(part.name).options;
+    for (const auto& [name, value] : part.options)
+      require(std::ranges::find(known, name, &OptionInfo::name) != known.end(),
+              "subspace " + part.name + " has no option '" + name + "', expected " +
+                  (known.empty() ? "none" : "one of ") + listed(known, &OptionInfo::name));
+  }
   require(parts.size() == 1 || choice.dimension == 0,
           "subspace '" + choice.name + "' has the dimensions of its parts, expected no other");
   require(choice.modes >= 1, "number of modes is " + std::to_string(choice.modes) + ", expected at least 1");

@@ -120,12 +120,10 @@ FullError full_error(const Training<Model, S>& training, const WorkingComponents
   return result;
 }
 
-/// All stages from training to checks.
+/// All stages from the selection to checks.
 template <ForceModel Model, Subspace S, typename Selector>
-Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std::shared_ptr<const S> subspace,
-                           const ObjectTraits& traits, const Selector& select, const ReduceOptions& options,
+Reduction<Model, S> reduce(const Training<Model, S>& training, const Selector& select, const ReduceOptions& options,
                            StageClock& stage) {
-  const Training<Model, S> training = train(system, subspace, traits, options, stage);
   const Selection selection =
       stage("selection", [&](auto) { return select_components(training, select, options, stage.progress()); });
   WorkingComponents working = working_components(selection, options.selector);
@@ -155,9 +153,18 @@ Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std:
   report.seconds = stage.seconds();
   report.total_seconds = stage.total_seconds();
   report.peak_memory = peak_resident_memory();
-  return {{std::move(subspace), training.object.rest_stiffness, std::move(working.indices), std::move(working.weights)},
-          std::move(system),
+  const ReducedObject<Model, S>& object = training.object;
+  return {{object.subspace, object.rest_stiffness, std::move(working.indices), std::move(working.weights)},
+          object.system,
           std::move(report)};
+}
+
+/// All stages from training to checks.
+template <ForceModel Model, Subspace S, typename Selector>
+Reduction<Model, S> reduce(std::shared_ptr<const FullSystem<Model>> system, std::shared_ptr<const S> subspace,
+                           const ObjectTraits& traits, const Selector& select, const ReduceOptions& options,
+                           StageClock& stage) {
+  return reduce(train(std::move(system), std::move(subspace), traits, options, stage), select, options, stage);
 }
 
 /// Samples poses of the subspace, fits the forces by few components that `select` chooses, and measures the error. Any

@@ -8,6 +8,9 @@ supple_test(equilibrium_fitting LABEL unit LINKS supple::reduction
   SOURCES reduction/training/equilibrium_fitting_test.cpp)
 supple_test(relaxation LABEL unit LINKS supple::reduction SOURCES reduction/training/relaxation_test.cpp)
 supple_test(reduce LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/reduce_test.cpp)
+supple_test(models LABEL unit LINKS supple::reduction
+  SOURCES reduction/pipeline/model_choice_test.cpp reduction/pipeline/model_ladder_test.cpp
+          reduction/pipeline/model_series_test.cpp)
 supple_test(selection_study LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/selection_study_test.cpp)
 supple_test(heat_reduction LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/heat_test.cpp)
 supple_test(editor LABEL unit LINKS supple::reduction SOURCES reduction/editing/editor_test.cpp)
