@@ -4,6 +4,7 @@
 #include <app/commands/fidelity_command.hpp>
 #include <app/commands/info_command.hpp>
 #include <app/commands/mesh_command.hpp>
+#include <app/commands/pareto_command.hpp>
 #include <app/commands/reduce_command.hpp>
 #include <app/commands/select_command.hpp>
 #include <app/commands/simulate_command.hpp>
@@ -28,7 +29,7 @@ using namespace supple;
 
 /// In the order of the help.
 using Commands = std::tuple<ReduceCommand, SimulateCommand, EditCommand, FidelityCommand, CompareCommand,
-                            CompareSelectorsCommand, SelectCommand, InfoCommand, MeshCommand>;
+                            CompareSelectorsCommand, ParetoCommand, SelectCommand, InfoCommand, MeshCommand>;
 
 /// Messages of any origin on one line.
 int fail(int code, std::string message) {

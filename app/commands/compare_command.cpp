@@ -3,6 +3,7 @@
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
+#include <app/scene/comparison.hpp>
 #include <app/scene/surface.hpp>
 #include <app/scene/trajectory.hpp>
 #include <core/check.hpp>
@@ -20,8 +21,6 @@
 namespace supple {
 
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Frames of both at the same times.
 std::vector<std::pair<Index, Index>> common_frames(const CompareCommand& command, const Trajectory& a,
@@ -45,33 +44,6 @@ std::vector<std::pair<Index, Index>> common_frames(const CompareCommand& command
   }
   return pairs;
 }
-
-/// Deviation and size of one quantity in every frame.
-struct Series {
-  Vector difference, reference;
-
-  explicit Series(Index frames) : difference(frames), reference(frames) {}
-  /// Root mean square over the frames, relative.
-  double relative() const { return ratio(difference.norm(), reference.norm()); }
-  /// The worst frame against the largest reference.
-  double largest() const { return ratio(difference.maxCoeff(), reference.maxCoeff()); }
-  /// Of the largest reference, in every frame; not a number if that is zero.
-  Vector share() const {
-    return difference.unaryExpr([size = reference.maxCoeff()](double error) { return ratio(error, size); });
-  }
-
- private:
-  static double ratio(double error, double size) { return size > 0 ? error / size : error > 0 ? not_a_number : 0; }
-};
-
-struct Comparison {
-  Vector time;
-  Series position, velocity, energy;
-  Vector largest_distance;  ///< of any node, in every frame [m]
-
-  explicit Comparison(Index frames)
-      : time(frames), position(frames), velocity(frames), energy(frames), largest_distance(frames) {}
-};
 
 std::pair<std::string, std::string> names(const CompareCommand& command, const Trajectory& a, const Trajectory& b) {
   if (a.reduced != b.reduced) return a.reduced ? std::pair("reduced", "full") : std::pair("full", "reduced");
@@ -131,25 +103,8 @@ void CompareCommand::run() const {
   const std::vector<std::pair<Index, Index>> frames = common_frames(*this, a, b);
   const OutputFolder folder(output);
 
-  const Vector mass = nodal_mass(model_b.body);
-  const auto norm = [&](const Vector& field) { return std::sqrt(as_points(field).rowwise().squaredNorm().dot(mass)); };
-  Comparison result(static_cast<Index>(frames.size()));
   const Progress progress = progress_bar();
-  for (Index k = 0; k < result.time.size(); ++k) {
-    const auto [f, g] = frames[k];
-    result.time[k] = b.time[g];
-    const Vector u = frame_displacement(b, model_b, g), du = frame_displacement(a, model_a, f) - u;
-    const Vector v = frame_velocity(b, model_b, g), dv = frame_velocity(a, model_a, f) - v;
-    result.position.difference[k] = norm(du);
-    result.position.reference[k] = norm(u);
-    result.velocity.difference[k] = norm(dv);
-    result.velocity.reference[k] = norm(v);
-    const double energy = b.kinetic[g] + b.elastic[g];
-    result.energy.difference[k] = std::abs(a.kinetic[f] + a.elastic[f] - energy);
-    result.energy.reference[k] = std::abs(energy);
-    result.largest_distance[k] = std::sqrt(as_points(du).rowwise().squaredNorm().maxCoeff());
-    tell(progress, "frames", static_cast<double>(k + 1) / static_cast<double>(result.time.size()));
-  }
+  const Comparison result = compare({a, model_a}, {b, model_b}, frames, progress);
   Index worst = 0;
   result.position.difference.maxCoeff(&worst);
   const double diagonal = bounding_box(nodes).diagonal(), distance = result.largest_distance.maxCoeff();
@@ -181,17 +136,18 @@ void CompareCommand::run() const {
   report["frames"] = frames.size();
   report["frames_left_out"] = a.num_frames() + b.num_frames() - 2 * static_cast<Index>(frames.size());
   report["until"] = result.time[result.time.size() - 1];
-  const auto add = [&](const char* key, const Series& series) {
+  const auto add = [&](const char* key, const Deviation& series) {
     report[key] = {{"relative", series.relative()}, {"largest", series.largest()}};
   };
   add("position_error", result.position);
   add("velocity_error", result.velocity);
   add("energy_error", result.energy);
   report["largest_distance"] = {{"metres", distance}, {"share_of_diagonal", distance / diagonal}};
-  report["speed_up"] = b.steps_per_second > 0 ? a.steps_per_second / b.steps_per_second : not_a_number;
+  report["speed_up"] =
+      b.steps_per_second > 0 ? a.steps_per_second / b.steps_per_second : std::numeric_limits<double>::quiet_NaN();
   if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) {
-    const auto errors = [](const Series& series) {
+    const auto errors = [](const Deviation& series) {
       return shown_percent(series.relative()) + "; worst frame " + shown_percent(series.largest()) + " of the largest";
     };
     Rows rows{{"frames", std::to_string(frames.size()) + " until " + shown(result.time[result.time.size() - 1]) + " s"},

@@ -1,6 +1,7 @@
 #include <app/commands/option_checks.hpp>
 #include <app/report/terminal.hpp>
 #include <reduction/basis/subspace_library.hpp>
+#include <reduction/pipeline/model_ladder.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -43,6 +44,17 @@ CLI::Validator number_between(double low, double high) {
     return number && value >= low && value <= high
                ? ""
                : "'" + text + "' is no number from " + shown(low) + " to " + shown(high);
+  });
+}
+
+CLI::Validator model_words() {
+  return check([](const std::string& text) -> std::string {
+    try {
+      (void)ModelWords::parse(text);
+      return "";
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
   });
 }
 

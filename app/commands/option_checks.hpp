@@ -19,6 +19,8 @@ CLI::Validator positive_number();
 CLI::Validator number_between(double low, double high);
 /// Names of subspaces, with options and in sums.
 CLI::Validator subspace_name();
+/// Models, see ModelWords.
+CLI::Validator model_words();
 
 /// A name of the registry, with options that its entry has: "nn-sp:patience=3". Asked while the line is read, when
 /// plug-ins have added theirs.

@@ -4,7 +4,9 @@
 #include <app/commands/shared_options.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
+#include <app/report/machine.hpp>
 #include <app/report/terminal.hpp>
+#include <app/scene/model_search.hpp>
 #include <app/scene/surface.hpp>
 #include <core/parallel.hpp>
 #include <core/peak_memory.hpp>
@@ -68,6 +70,96 @@ ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const
   return options;
 }
 
+/// What the model is asked for, if sizes are to follow from it.
+std::optional<ModelGoal> goal_of(const ReduceCommand& command) {
+  if (!command.full_error && !command.step_time) return {};
+  if (command.full_error && command.step_time)
+    throw InputError("--full-error and --step-time each choose a model, expected one of them");
+  const bool by_error = command.full_error.has_value();
+  const std::string option = by_error ? "--full-error" : "--step-time";
+  const ModelGoal goal{
+      by_error ? ModelGoal::Limit::Error : ModelGoal::Limit::StepTime,
+      by_error ? option_quantity(option, *command.full_error, "1") : option_quantity(option, *command.step_time, "s")};
+  if (!(goal.most > 0 && std::isfinite(goal.most)))
+    throw InputError(option + " is " + shown(goal.most) + (by_error ? "" : " s") + ", expected > 0");
+  const auto refuse = [&](bool given, const std::string& other) {
+    if (given)
+      throw InputError(option + " chooses the size of the model, which " + other + " sets: expected one of them");
+  };
+  refuse(command.points.has_value(), "--points");
+  refuse(command.modes.has_value(), "--modes");
+  refuse(command.dimension.has_value(), "--dimension");
+  refuse(command.target_error.has_value(), "--target-error");
+  refuse(command.selector == "all", "--selector all");
+  if (command.full_loads == 0)
+    throw InputError(option + " compares models with the full object, which --full-loads 0 forbids");
+  return goal;
+}
+
+/// The ladder, as far as it is in the subspace that was asked for and has room for what is to be kept.
+std::vector<ModelRung> ladder_of(const ReduceCommand& command, const Body& body, const ReduceOptions& options) {
+  std::vector<ModelRung> ladder = model_ladder(body, options);
+  const auto kind = [](const ModelRung& rung) { return Choice::parse(rung.options.subspace).name; };
+  if (command.subspace) {
+    std::erase_if(ladder, [&](const ModelRung& rung) { return kind(rung) != *command.subspace; });
+    if (ladder.empty())
+      throw InputError("--subspace " + *command.subspace + " is in none of the models that " +
+                       (command.full_error ? "--full-error" : "--step-time") +
+                       " chooses from here, expected derivatives or extended");
+  }
+  std::erase_if(ladder, [&](const ModelRung& rung) {
+    return static_cast<Index>(options.must_keep.size()) > rung.options.points;
+  });
+  if (ladder.empty())
+    throw InputError(command.must_keep.string() + ": names " + std::to_string(options.must_keep.size()) +
+                     " components, more than any of the models has points that " +
+                     (command.full_error ? "--full-error" : "--step-time") + " chooses from");
+  return ladder;
+}
+
+std::string in_words(const ModelGoal& goal) {
+  return goal.limit == ModelGoal::Limit::Error ? "equilibria at most " + shown_percent(goal.most) + " off"
+                                               : "a step in at most " + shown(1e6 * goal.most, 3) + " µs";
+}
+
+/// Why the search has chosen its model.
+std::string reason(const ModelSearch& search, const ModelGoal& goal) {
+  const std::string count = std::to_string(search.tried.size()) + (search.tried.size() == 1 ? " model" : " models");
+  if (goal.limit == ModelGoal::Limit::Error)
+    return search.met ? "the first of " + count + " tried, coarse to fine, with " + in_words(goal)
+                      : "the nearest to the full object of " + count + ", none of which has " + in_words(goal);
+  return search.met ? "the nearest to the full object of those that make " + in_words(goal) + ", of " + count + " tried"
+                    : "the fastest of " + count + " tried, none of which makes " + in_words(goal);
+}
+
+Json search_json(const ModelSearch& search, const ModelGoal& goal) {
+  Json tried = Json::array();
+  for (const TriedModel& model : search.tried)
+    tried.push_back({{"model", model.model},
+                     {"dimension", model.dimension},
+                     {"points", model.points},
+                     {"full_error", model.measure.error},
+                     {"step_seconds", model.measure.step_seconds}});
+  return {{goal.limit == ModelGoal::Limit::Error ? "full_error" : "step_seconds", goal.most},
+          {"met", search.met},
+          {"chosen", search.tried[search.chosen].model},
+          {"reason", reason(search, goal)},
+          {"tried", std::move(tried)},
+          {"machine", {{"processor", processor_name()}, {"threads", num_threads()}}}};
+}
+
+/// Rows of the report: what was tried, and which it is.
+void add_search(Rows& rows, const ModelSearch& search, const ModelGoal& goal) {
+  for (std::size_t k = 0; k < search.tried.size(); ++k) {
+    const auto& [model, dimension, points, measure] = search.tried[k];
+    std::string text = "d = " + std::to_string(dimension) + ", s = " + std::to_string(points) + ": " +
+                       shown_percent(measure.error) + " off";
+    if (!std::isnan(measure.step_seconds)) text += ", a step in " + shown(1e6 * measure.step_seconds, 3) + " µs";
+    rows.emplace_back(k == 0 ? "tried" : "", text + (k == search.chosen ? "; chosen" : ""));
+  }
+  rows.emplace_back("chosen as", reason(search, goal));
+}
+
 /// What made the model, and nothing that differs between two runs of the same job.
 Json options_json(const ReduceCommand& command, const ReduceOptions& options, const Body& body) {
   Json json = problem_json(command, options, body);
@@ -80,6 +172,8 @@ Json options_json(const ReduceCommand& command, const ReduceOptions& options, co
   file("candidates", command.candidates);
   file("must_keep", command.must_keep);
   file("warm_start", command.warm_start);
+  if (command.full_error) json["full_error"] = *command.full_error;
+  if (command.step_time) json["step_time"] = *command.step_time;
   return json;
 }
 
@@ -99,14 +193,7 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   json["mesh"][json_key(cell_name(model.body))] = num_cells(model.body);
   json["dimension"] = report.dimension;
   json["points"] = report.points;
-  const FullError& full = report.full_error;
-  json["full_error"] = {{"total", full.total},
-                        {"outside_subspace", full.outside},
-                        {"inside_subspace", full.inside},
-                        {"worst", full.worst},
-                        {"loads", full.loads},
-                        {"halved", full.halved},
-                        {"unfinished", full.unfinished}};
+  json["full_error"] = json_full_error(report.full_error);
   json["training_error"] = report.training_error;
   json["held_out_error"] = report.held_out_error;
   json["equilibrium_error"] = report.equilibrium_error;
@@ -196,7 +283,8 @@ void draw_spectrum(const std::filesystem::path& path, const std::string& kind, c
                                hertz(report.fitted_eigenvalues), PlotStyle::Markers}}});
 }
 
-void print_summary(const ReduceCommand& command, const ReducedModel& model, const ReduceReport& report) {
+void print_summary(const ReduceCommand& command, const ReducedModel& model, const ReduceReport& report,
+                   const Rows& search) {
   const std::string kind(component_name(model.body));
   Rows rows{{"object", shown_count(report.nodes) + " nodes, " + shown_count(report.components) + " " + kind + ", " +
                            (report.fixed_nodes > 0 ? shown_count(report.fixed_nodes) + " nodes fixed" : "free")},
@@ -204,6 +292,7 @@ void print_summary(const ReduceCommand& command, const ReducedModel& model, cons
                              std::to_string(report.omega.size()) + " modes" +
                              (report.rigid_modes > 0 ? " (" + std::to_string(report.rigid_modes) + " rigid)" : "")},
             {"points", std::to_string(report.points) + " " + kind}};
+  rows.insert(rows.end(), search.begin(), search.end());
   const FullError& full = report.full_error;
   if (full.loads > 0) {
     rows.emplace_back("full object", "equilibria " + shown_percent(full.total) + " off, rms of " +
@@ -239,12 +328,24 @@ void ReduceCommand::run() const {
   Stopwatch watch;
   const NamedMesh named = load_mesh(mesh);
   const Body body = load_body(*this, named);
-  const ReduceOptions options = method(*this, named, body);
+  const std::optional<ModelGoal> goal = goal_of(*this);
+  ReduceOptions options = method(*this, named, body);
+  const std::vector<ModelRung> ladder = goal ? ladder_of(*this, body, options) : std::vector<ModelRung>();
   const OutputFolder folder(plots);
   const double read_seconds = watch.seconds();
 
   ReduceReport report;
-  ReducedModel result = reduce(body, options, &report, progress_bar());
+  ReducedModel result;
+  std::optional<ModelSearch> found;
+  if (goal) {
+    found = search(body, ladder, *goal, progress_bar());
+    options = found->options;
+    report = found->report;
+    result = std::move(found->model);
+    report.seconds.emplace_back("search", found->other_seconds);
+  } else {
+    result = reduce(body, options, &report, progress_bar());
+  }
   clear_progress();
   result.provenance = {{"version", SUPPLE_VERSION},
                        {"mesh", mesh},
@@ -257,6 +358,7 @@ void ReduceCommand::run() const {
   if (options.target_error > 0 && report.training_error > options.target_error)
     warn("the training error is " + shown_percent(report.training_error) + ", not " +
          shown_percent(options.target_error) + ": allow more --points than " + std::to_string(options.points));
+  if (found && !found->met) warn("the goal is missed: the model is " + reason(*found, *goal));
 
   watch.restart();
   {
@@ -279,7 +381,12 @@ void ReduceCommand::run() const {
   Json json_report = report_json(*this, options, named, result, report);
   json_report["seconds"] = json_seconds(report.seconds, report.total_seconds);
   json_report["peak_memory"] = report.peak_memory;
-  if (!is_stdout(json)) print_summary(*this, result, report);
+  Rows search_rows;
+  if (found) {
+    json_report["search"] = search_json(*found, *goal);
+    add_search(search_rows, *found, *goal);
+  }
+  if (!is_stdout(json)) print_summary(*this, result, report, search_rows);
   write_json(json, json_report);
 }
 
@@ -305,15 +412,22 @@ void ReduceCommand::declare(CLI::App& app) {
       ->type_name("S")
       ->check(whole_number())
       ->group(method_group);
-  command
-      .add_option("--full-loads", full_loads,
-                  "Fresh loads under which equilibria are compared with those of the full object; 0: none [8]")
-      ->type_name("N")
-      ->check(whole_number(0))
-      ->group(method_group);
+  declare_full_loads(command, *this, /*least=*/0);
   command.add_option("--target-error", target_error, "Take as few components as reach this training error")
       ->type_name("SHARE")
       ->check(positive_number())
+      ->group(method_group);
+  command
+      .add_option(
+          "--full-error", full_error,
+          "Choose subspace and points, coarse to fine: the first model whose equilibria are at most so far from "
+          "those of the full object, such as 5%")
+      ->type_name("SHARE")
+      ->group(method_group);
+  command
+      .add_option("--step-time", step_time,
+                  "Choose them: the nearest to the full object whose steps take at most so long here, such as '50 us'")
+      ->type_name("T")
       ->group(method_group);
   command.add_option("--selector", selector, "How they are chosen, see below [nn-sp; paper: nn-htp]")
       ->type_name("NAME[:OPTION=VALUE...]")
@@ -336,6 +450,7 @@ void ReduceCommand::declare(CLI::App& app) {
            "\nExamples:\n"
            "supple reduce dragon.msh -o dragon.supple --fix 'y<4%' --points 150\n"
            "supple reduce dragon.msh -o dragon.supple --selector nn-sp:max_iterations=100:patience=20\n"
+           "supple reduce dragon.msh -o dragon.supple --fix 'y<4%' --full-error 5%\n"
            "supple reduce octopus -o octopus.supple --fix 'y<4%' --picture octopus.png --json -";
   });
   command.callback([this] { run(); });

@@ -18,6 +18,7 @@ struct ReduceCommand : ProblemOptions {
   std::optional<Index> points;
   std::optional<double> target_error;
   std::optional<std::string> selector;
+  std::optional<std::string> full_error, step_time;  ///< what the model is to reach, instead of a size; at most one
   std::filesystem::path candidates, must_keep, warm_start;  ///< lists of components, a model; empty: none
 
   int threads = 0;

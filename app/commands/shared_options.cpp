@@ -101,7 +101,7 @@ void declare_plugins(CLI::App& command) {
       ->take_all();
 }
 
-void declare_problem(CLI::App& command, ProblemOptions& problem) {
+void declare_object(CLI::App& command, ProblemOptions& problem) {
   command
       .add_option("MESH", problem.mesh,
                   "Tets or hexahedra (.msh .mesh .node .ele .veg .vtk .vtu), a surface (.obj .off .ply .stl), or a "
@@ -110,14 +110,23 @@ void declare_problem(CLI::App& command, ProblemOptions& problem) {
   declare_plugins(command);
   declare_material(command, problem);
   declare_held_nodes(command, problem);
+}
+
+void declare_snapshots(CLI::App& command, ProblemOptions& problem) {
+  command
+      .add_option("--snapshots", problem.snapshots,
+                  "Displacements for the subspace pca: .npy, tensor file or trajectory")
+      ->type_name("FILE")
+      ->group(method_group);
+}
+
+void declare_problem(CLI::App& command, ProblemOptions& problem) {
+  declare_object(command, problem);
   command.add_option("--dimension", problem.dimension, "Of the subspace, where the modes leave a choice")
       ->type_name("D")
       ->check(whole_number())
       ->group(method_group);
-  command
-      .add_option("--snapshots", problem.snapshots, "Displacements for --subspace pca: .npy, tensor file or trajectory")
-      ->type_name("FILE")
-      ->group(method_group);
+  declare_snapshots(command, problem);
   command
       .add_option("--modes", problem.modes,
                   "Vibration modes, rigid ones included [15]; those that derivatives are taken of: flexible ones [15; "
@@ -128,22 +137,13 @@ void declare_problem(CLI::App& command, ProblemOptions& problem) {
   declare_seed(command, problem.seed);
 }
 
-void declare_training(CLI::App& command, ProblemOptions& problem) {
+void declare_fitting(CLI::App& command, ProblemOptions& problem) {
   command
       .add_option("--recipe", problem.recipe,
                   std::string("Where unset options come from: relaxed (fitted to the full object), subspace (to all "
                               "components in the subspace), or paper ") +
                       (problem.relaxes ? "[relaxed; poses or snapshots of one's own: subspace]" : "[subspace]"))
       ->check(CLI::IsMember({"default", "relaxed", "subspace", "paper"}))
-      ->group(method_group);
-  command
-      .add_option(
-          "--subspace", problem.subspace,
-          "extended (modes under all linear maps), modal (modes alone), derivatives (modal derivatives), skinning "
-          "(skinning eigenmodes), pca (of --snapshots), or several, as in extended+pca: what they span together "
-          "[extended; solids, relaxed: derivatives]")
-      ->type_name("NAME[:OPTION=VALUE...]")
-      ->check(subspace_name())
       ->group(method_group);
   command.add_option("--poses", problem.poses, "Training poses [300; relaxed: 100; paper: 1000]")
       ->type_name("T")
@@ -185,6 +185,29 @@ void declare_training(CLI::App& command, ProblemOptions& problem) {
       .add_option("--held-out", problem.held_out,
                   "Fresh poses to measure the error on, at each of three amplitudes; 0: none [100]")
       ->type_name("N")
+      ->group(method_group);
+}
+
+void declare_training(CLI::App& command, ProblemOptions& problem) {
+  command
+      .add_option(
+          "--subspace", problem.subspace,
+          "extended (modes under all linear maps), modal (modes alone), derivatives (modal derivatives), skinning "
+          "(skinning eigenmodes), pca (of --snapshots), or several, as in extended+pca: what they span together "
+          "[extended; solids, relaxed: derivatives]")
+      ->type_name("NAME[:OPTION=VALUE...]")
+      ->check(subspace_name())
+      ->group(method_group);
+  declare_fitting(command, problem);
+}
+
+void declare_full_loads(CLI::App& command, ProblemOptions& problem, Index least) {
+  command
+      .add_option("--full-loads", problem.full_loads,
+                  "Fresh loads under which equilibria are compared with those of the full object" +
+                      std::string(least == 0 ? "; 0: none [8]" : " [8]"))
+      ->type_name("N")
+      ->check(whole_number(least))
       ->group(method_group);
 }
 

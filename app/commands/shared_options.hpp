@@ -1,6 +1,8 @@
 #pragma once
 /// \file Options that several commands have, declared once: same spelling, same help.
 
+#include <core/types.hpp>
+
 #include <filesystem>
 #include <string>
 
@@ -22,10 +24,17 @@ void declare_seed(CLI::App& command, std::uint64_t& seed);
 /// Plug-ins are loaded while the line is read, before anything asks for what they add.
 void declare_plugins(CLI::App& command);
 
-/// The object and the size of its subspace, for all commands that begin with a mesh.
+/// The object, for all commands that begin with a mesh.
+void declare_object(CLI::App& command, ProblemOptions& problem);
+void declare_snapshots(CLI::App& command, ProblemOptions& problem);
+/// The object and the size of its subspace.
 void declare_problem(CLI::App& command, ProblemOptions& problem);
-/// The subspace and the training, for commands that fit forces.
+/// The training, for commands that fit forces.
+void declare_fitting(CLI::App& command, ProblemOptions& problem);
+/// The subspace and the training.
 void declare_training(CLI::App& command, ProblemOptions& problem);
+/// How models are compared with the full object. \param least  number of loads.
+void declare_full_loads(CLI::App& command, ProblemOptions& problem, Index least);
 
 /// Sections of the help: what there is by name, with options.
 std::string material_help();

@@ -29,12 +29,6 @@ namespace supple {
 
 namespace {
 
-/// Single for dense bases, whose rows are too many for the caches near a core.
-RowPrecision default_precision(const ReducedModel& model) {
-  return std::holds_alternative<std::shared_ptr<const DenseBasis>>(model.subspace) ? RowPrecision::Single
-                                                                                   : RowPrecision::Double;
-}
-
 /// The scene with the command line's word on top, and all that was left open decided.
 SimulationOptions decide(const SimulateCommand& command, const ReducedModel& model, Scene& scene) {
   if (command.time) scene.duration = option_quantity("--time", *command.time, "s");
@@ -47,84 +41,17 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
     if (node < 0 || node >= num_nodes(model.body))
       throw InputError("--track: there is no node " + std::to_string(node) + ", expected 0 to " +
                        std::to_string(num_nodes(model.body) - 1));
-  if (!scene.duration || !scene.step || scene.track.empty()) {
-    const Scene pluck = pluck_scene(model);
-    if (!scene.duration) scene.duration = pluck.duration;
-    if (!scene.step) scene.step = pluck.step;
-    if (scene.track.empty()) scene.track = pluck.track;
-  }
-  if (!(*scene.duration > 0)) throw InputError("the duration is " + shown(*scene.duration) + " s, expected > 0");
-  if (!(*scene.step > 0)) throw InputError("the step is " + shown(*scene.step) + " s, expected > 0");
-  const double steps = std::max(1.0, std::ceil(*scene.duration / *scene.step - 1e-6));
-  if (steps > 1e8) throw InputError(shown(steps) + " steps are more than the 1e8 that a run may have");
-
-  SimulationOptions options;
-  options.step = *scene.step;
-  options.num_steps = static_cast<Index>(steps);
-  options.every = scene.every.value_or((options.num_steps + 99) / 100);
-  if (options.every < 1) throw InputError("--every is " + std::to_string(options.every) + ", expected at least 1");
+  if (command.every && *command.every < 1)
+    throw InputError("--every is " + std::to_string(*command.every) + ", expected at least 1");
   if (command.integrator) scene.integrator = Choice::parse(*command.integrator);
-  if (scene.integrator) options.integrator = *scene.integrator;
-  check_integrator(options.integrator);
-  options.steps.damping = scene.damping.value_or(damping(model.body));
-  const NonlinearSolver usual = command.full ? NonlinearSolver(WarpedBfgs{}) : NonlinearSolver(Bfgs{});
-  options.steps.solver = scene.solver.value_or(usual);
-  if (!is_step_solver_for(command.full, options.steps.solver)) {
-    if (command.solver)
-      throw InputError("--solver " + *command.solver + " is for " +
-                       (command.full ? "reduced systems; --full runs with warped-bfgs or newton"
-                                     : "full systems (--full); reduced ones run with bfgs, broyden or newton"));
-    options.steps.solver = usual;
-  }
-  if (scene.tolerance) options.steps.tolerance = *scene.tolerance;
-  if (scene.max_iterations) options.steps.max_iterations = *scene.max_iterations;
+  if (command.solver && !is_step_solver_for(command.full, *scene.solver))
+    throw InputError("--solver " + *command.solver + " is for " +
+                     (command.full ? "reduced systems; --full runs with warped-bfgs or newton"
+                                   : "full systems (--full); reduced ones run with bfgs, broyden or newton"));
   if (command.full && command.precision) throw InputError("--precision is for reduced systems, not for --full");
-  if (!command.full) {
-    options.precision = default_precision(model);
-    if (command.precision) options.precision = value_named<RowPrecision>(*command.precision, "precision");
-  }
-  return options;
-}
-
-/// What the steps took, all together.
-struct Effort {
-  double mean_iterations = 0, worst_residual = 0, steps_per_second = 0;
-  Index most_iterations = 0, refreshes = 0, missed = 0;
-
-  explicit Effort(const Simulation& run) {
-    for (Index k = 1; k <= run.num_steps(); ++k) {
-      const StepRecord& step = run.steps[k];
-      mean_iterations += static_cast<double>(step.iterations) / static_cast<double>(run.num_steps());
-      most_iterations = std::max(most_iterations, step.iterations);
-      refreshes += step.refreshes;
-      if (std::isfinite(step.residual)) worst_residual = std::max(worst_residual, step.residual);
-      missed += step.status != Status::Converged;
-    }
-    if (run.integration_seconds > 0) steps_per_second = static_cast<double>(run.num_steps()) / run.integration_seconds;
-  }
-};
-
-Trajectory trajectory_of(const SimulateCommand& command, const Simulation& run, const SimulationOptions& options) {
-  Trajectory trajectory{.reduced = !command.full,
-                        .model = std::filesystem::absolute(command.model).lexically_normal(),
-                        .model_checksum = header_checksum(command.model),
-                        .step = options.step,
-                        .steps_per_second = Effort(run).steps_per_second,
-                        .time = Eigen::Map<const Vector>(run.times.data(), static_cast<Index>(run.times.size())),
-                        .kinetic = {},
-                        .elastic = {},
-                        .work = {},
-                        .u = run.u,
-                        .v = run.v};
-  for (Vector* values : {&trajectory.kinetic, &trajectory.elastic, &trajectory.work})
-    values->resize(trajectory.num_frames());
-  for (Index f = 0; f < trajectory.num_frames(); ++f) {
-    const StepRecord& step = run.steps[f * options.every];
-    trajectory.kinetic[f] = step.kinetic;
-    trajectory.elastic[f] = step.elastic;
-    trajectory.work[f] = step.work;
-  }
-  return trajectory;
+  SimulationOptions options = complete(scene, model);
+  if (command.precision) options.precision = value_named<RowPrecision>(*command.precision, "precision");
+  return command.full ? for_full_system(options) : options;
 }
 
 void write_energies(const std::filesystem::path& path, const Simulation& run) {
@@ -249,7 +176,9 @@ void SimulateCommand::run() const {
   const Effort effort(result);
   double reconstruction = 0;
   if (!output.empty()) {
-    const Trajectory trajectory = trajectory_of(*this, result, options);
+    Trajectory trajectory = trajectory_of(result, options, !full);
+    trajectory.model = std::filesystem::absolute(model).lexically_normal();
+    trajectory.model_checksum = header_checksum(model);
     save_trajectory(output / trajectory_file, trajectory);
     write_energies(output / "energies.csv", result);
     write_tracked(output / "tracked.csv", what, result);

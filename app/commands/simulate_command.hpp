@@ -22,7 +22,7 @@ struct SimulateCommand {
   std::optional<std::string> time, step;
   std::optional<std::string> integrator, solver;
   std::optional<double> tolerance;
-  std::optional<std::string> precision;  ///< double or single; see default_precision()
+  std::optional<std::string> precision;  ///< double or single; see complete()
   std::optional<Index> every;
   std::vector<Index> track;
   std::string frames = "surface";  ///< surface, cells (or tets) or none

@@ -43,6 +43,16 @@ Json json_history(const SelectionReport& report) {
   return history;
 }
 
+Json json_full_error(const FullError& error) {
+  return {{"total", error.total},
+          {"outside_subspace", error.outside},
+          {"inside_subspace", error.inside},
+          {"worst", error.worst},
+          {"loads", error.loads},
+          {"halved", error.halved},
+          {"unfinished", error.unfinished}};
+}
+
 Json json_seconds(const std::vector<std::pair<std::string, double>>& seconds, double total) {
   Json result = Json::object();
   for (const auto& [stage, time] : seconds) result[stage] = result.value(stage, 0.0) + time;

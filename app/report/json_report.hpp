@@ -3,6 +3,7 @@
 
 #include <core/stopwatch.hpp>
 #include <core/types.hpp>
+#include <reduction/pipeline/reduce_options.hpp>
 #include <sparse/selection/selection.hpp>
 
 #include <nlohmann/json.hpp>
@@ -28,6 +29,7 @@ std::string json_key(std::string_view name);
 Json json_numbers(VectorIn values);
 /// An entry for each iterate of a selector.
 Json json_history(const SelectionReport& report);
+Json json_full_error(const FullError& error);
 Json json_seconds(const std::vector<std::pair<std::string, double>>& seconds, double total);
 
 /// The stages of a command and their times.

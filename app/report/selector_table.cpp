@@ -1,4 +1,5 @@
 #include <app/report/exit_guard.hpp>
+#include <app/report/page.hpp>
 #include <app/report/selector_table.hpp>
 #include <app/report/terminal.hpp>
 #include <core/output_file.hpp>
@@ -107,20 +108,11 @@ Axis fitted(Axis axis, const std::vector<PlotSeries>& series, const Values& valu
   return axis;
 }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text)
-    result += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : std::string(1, c);
-  return result;
+TextTable table_of(const std::vector<SelectorSummary>& summaries, const std::vector<PullScene>& scenes) {
+  TextTable table{heading(summaries, scenes), {}};
+  for (const SelectorSummary& summary : summaries) table.rows.push_back(cells(summary));
+  return table;
 }
-
-constexpr std::string_view page_style =
-    R"(body { font: 15px/1.5 system-ui, sans-serif; max-width: 64rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
-figure { margin: 2rem 0; } figcaption { color: #555; } svg { max-width: 100%; height: auto; }
-.wide { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
-th, td { padding: .25rem .7rem; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }
-th:first-child, td:first-child { text-align: left; }
-)";
 
 }  // namespace
 
@@ -213,17 +205,7 @@ void write_runs(const std::filesystem::path& path, const std::vector<SelectorRun
 }
 
 std::string markdown_table(const std::vector<SelectorSummary>& summaries, const std::vector<PullScene>& scenes) {
-  const auto line = [](const std::vector<std::string>& texts) {
-    std::string result = "|";
-    for (const std::string& text : texts) result += " " + text + " |";
-    return result + "\n";
-  };
-  const std::vector<std::string> names = heading(summaries, scenes);
-  std::vector<std::string> rule(names.size(), "---:");
-  rule.front() = "---";
-  std::string result = line(names) + line(rule);
-  for (const SelectorSummary& summary : summaries) result += line(cells(summary));
-  return result;
+  return markdown(table_of(summaries, scenes));
 }
 
 std::vector<std::pair<std::string, std::string>> draw_selector_plots(const std::filesystem::path& folder,
@@ -280,24 +262,14 @@ std::vector<std::pair<std::string, std::string>> draw_selector_plots(const std::
 void write_selector_page(const std::filesystem::path& folder, const std::string& title, const std::string& description,
                          const std::vector<SelectorSummary>& summaries, const std::vector<PullScene>& scenes,
                          const std::vector<std::pair<std::string, std::string>>& plots) {
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + escaped(title) +
-                     "</title>\n<style>\n" + std::string(page_style) + "</style>\n</head>\n<body>\n<h1>" +
-                     escaped(title) + "</h1>\n<p>" + escaped(description) + "</p>\n";
+  std::string body;
   for (const auto& [name, caption] : plots) {
     const std::string drawing = read_file(folder / name);
-    page += "<figure>\n" + drawing.substr(std::min(drawing.size(), drawing.find("<svg"))) + "<figcaption>" +
-            escaped(caption) + "</figcaption>\n</figure>\n";
+    body += figure(drawing.substr(std::min(drawing.size(), drawing.find("<svg"))), caption);
   }
-  const auto row = [](const std::vector<std::string>& texts, const std::string& tag) {
-    std::string result = "<tr>";
-    for (const std::string& text : texts) result += "<" + tag + ">" + escaped(text) + "</" + tag + ">";
-    return result + "</tr>\n";
-  };
-  page += "<div class=\"wide\">\n<table>\n<thead>" + row(heading(summaries, scenes), "th") + "</thead>\n<tbody>\n";
-  for (const SelectorSummary& summary : summaries) page += row(cells(summary), "td");
-  page += "</tbody>\n</table>\n</div>\n<p>" + escaped(std::string(selector_table_notes)) + "</p>\n</body>\n</html>\n";
+  body += html(table_of(summaries, scenes)) + "<p>" + escaped(selector_table_notes) + "</p>\n";
   const ExitGuard guard;
-  write_file(folder / "index.html", page);
+  write_file(folder / "index.html", page(title, description, body));
 }
 
 }  // namespace supple

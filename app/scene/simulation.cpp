@@ -1,8 +1,11 @@
+#include <app/report/terminal.hpp>
 #include <app/scene/simulation.hpp>
+#include <app/scene/solver_names.hpp>
 #include <core/stopwatch.hpp>
 #include <physics/body/body_system.hpp>
 #include <physics/time/integrator_library.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace supple {
@@ -99,11 +102,11 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
   Vector external = loads.at(0).at(state.u);
   result.setup_seconds = setup.seconds();
 
-  const auto record = [&](const StepReport& report, double work) {
+  const auto record = [&](const StepReport& report, double work, double seconds) {
     const Index k = static_cast<Index>(result.steps.size());
     result.steps.push_back({static_cast<double>(k) * options.step,
                             0.5 * state.v.dot(system.mass().cwiseProduct(state.v)), system.energy(state.u), work,
-                            report.iterations, report.tangents, report.residual, report.status});
+                            report.iterations, report.tangents, report.residual, seconds, report.status});
     for (std::size_t j = 0; j < scene.track.size(); ++j)
       result.tracked.template block<1, 3>(k, 3 * j) = system.displacement(state.u, scene.track[j]).transpose();
     if (k % options.every != 0) return;
@@ -126,13 +129,14 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
   StepReport start;
   start.status = Status::Converged;
   start.residual = 0;
-  record(start, 0);
+  record(start, 0, 0);
   for (Index k = 1; k <= options.num_steps; ++k) {
     const Vector u_before = state.u;
     Stopwatch watch;
     const StepReport report = integrator.step(during(k), state);
     state.time = static_cast<double>(k) * options.step;  // rounding does not add up
-    result.integration_seconds += watch.seconds();
+    const double seconds = watch.seconds();
+    result.integration_seconds += seconds;
     const bool finite = report.status != Status::NotFinite && state.u.allFinite() && state.v.allFinite();
     if (!finite) {
       result.steps.push_back(result.steps.back());
@@ -141,7 +145,7 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
       break;
     }
     const Vector now = loads.at(static_cast<double>(k) * options.step).at(state.u);
-    record(report, result.steps.back().work + 0.5 * (external + now).dot(state.u - u_before));
+    record(report, result.steps.back().work + 0.5 * (external + now).dot(state.u - u_before), seconds);
     external = now;
     tell(progress, "time steps", static_cast<double>(k) / static_cast<double>(options.num_steps));
   }
@@ -153,7 +157,81 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
   return result;
 }
 
+/// Single for dense bases, whose rows are too many for the caches near a core.
+RowPrecision default_precision(const ReducedModel& model) {
+  return std::holds_alternative<std::shared_ptr<const DenseBasis>>(model.subspace) ? RowPrecision::Single
+                                                                                   : RowPrecision::Double;
+}
+
 }  // namespace
+
+SimulationOptions complete(Scene& scene, const ReducedModel& model) {
+  if (!scene.duration || !scene.step || scene.track.empty()) {
+    const Scene pluck = pluck_scene(model);
+    if (!scene.duration) scene.duration = pluck.duration;
+    if (!scene.step) scene.step = pluck.step;
+    if (scene.track.empty()) scene.track = pluck.track;
+  }
+  if (!(*scene.duration > 0)) throw InputError("the duration is " + shown(*scene.duration) + " s, expected > 0");
+  if (!(*scene.step > 0)) throw InputError("the step is " + shown(*scene.step) + " s, expected > 0");
+  const double steps = std::max(1.0, std::ceil(*scene.duration / *scene.step - 1e-6));
+  if (steps > 1e8) throw InputError(shown(steps) + " steps are more than the 1e8 that a run may have");
+
+  SimulationOptions options;
+  options.step = *scene.step;
+  options.num_steps = static_cast<Index>(steps);
+  options.every = scene.every.value_or((options.num_steps + 99) / 100);
+  if (scene.integrator) options.integrator = *scene.integrator;
+  check_integrator(options.integrator);
+  options.steps.damping = scene.damping.value_or(damping(model.body));
+  options.steps.solver = scene.solver.value_or(Bfgs{});
+  if (!is_step_solver_for(false, options.steps.solver)) options.steps.solver = Bfgs{};
+  if (scene.tolerance) options.steps.tolerance = *scene.tolerance;
+  if (scene.max_iterations) options.steps.max_iterations = *scene.max_iterations;
+  options.precision = default_precision(model);
+  return options;
+}
+
+SimulationOptions for_full_system(SimulationOptions options) {
+  if (!is_step_solver_for(true, options.steps.solver)) options.steps.solver = WarpedBfgs{};
+  options.precision = RowPrecision::Double;
+  return options;
+}
+
+Effort::Effort(const Simulation& run) {
+  for (Index k = 1; k <= run.num_steps(); ++k) {
+    const StepRecord& step = run.steps[k];
+    mean_iterations += static_cast<double>(step.iterations) / static_cast<double>(run.num_steps());
+    most_iterations = std::max(most_iterations, step.iterations);
+    refreshes += step.refreshes;
+    if (std::isfinite(step.residual)) worst_residual = std::max(worst_residual, step.residual);
+    missed += step.status != Status::Converged;
+  }
+  if (run.integration_seconds > 0) steps_per_second = static_cast<double>(run.num_steps()) / run.integration_seconds;
+}
+
+Trajectory trajectory_of(const Simulation& run, const SimulationOptions& options, bool reduced) {
+  Trajectory trajectory{.reduced = reduced,
+                        .model = {},
+                        .model_checksum = {},
+                        .step = options.step,
+                        .steps_per_second = Effort(run).steps_per_second,
+                        .time = Eigen::Map<const Vector>(run.times.data(), static_cast<Index>(run.times.size())),
+                        .kinetic = {},
+                        .elastic = {},
+                        .work = {},
+                        .u = run.u,
+                        .v = run.v};
+  for (Vector* values : {&trajectory.kinetic, &trajectory.elastic, &trajectory.work})
+    values->resize(trajectory.num_frames());
+  for (Index f = 0; f < trajectory.num_frames(); ++f) {
+    const StepRecord& step = run.steps[f * options.every];
+    trajectory.kinetic[f] = step.kinetic;
+    trajectory.elastic[f] = step.elastic;
+    trajectory.work[f] = step.work;
+  }
+  return trajectory;
+}
 
 Simulation simulate_reduced(const ReducedModel& model, const Scene& scene, const SimulationOptions& options,
                             const Progress& progress) {

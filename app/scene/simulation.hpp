@@ -2,6 +2,7 @@
 /// \file Simulation of a scene, and what is recorded on the way.
 
 #include <app/scene/scene.hpp>
+#include <app/scene/trajectory.hpp>
 #include <core/progress.hpp>
 #include <physics/time/implicit_step.hpp>
 #include <reduction/model/reduced_model.hpp>
@@ -19,12 +20,19 @@ struct SimulationOptions {
   RowPrecision precision = RowPrecision::Double;  ///< of a reduced system
 };
 
+/// Decides what a scene leaves open: duration, step and tracked node as in pluck_scene(), the rest as for a reduced system.
+/// \throws InputError for a duration or a step that is not positive, and for too many steps.
+SimulationOptions complete(Scene& scene, const ReducedModel& model);
+/// The same for the full system: solvers of reduced ones give way to WarpedBfgs.
+SimulationOptions for_full_system(SimulationOptions options);
+
 /// The state after a step, and what the step took.
 struct StepRecord {
   double time = 0;                            ///< [s]
   double kinetic = 0, elastic = 0, work = 0;  ///< energies, and the work of loads and springs so far [J]
   Index iterations = 0, refreshes = 0;
   double residual = 0;  ///< relative, see StepOptions::tolerance
+  double seconds = 0;   ///< wall-clock time of the step alone [s]
   Status status = Status::Converged;
 };
 
@@ -41,6 +49,17 @@ struct Simulation {
   Index num_steps() const { return static_cast<Index>(steps.size()) - 1; }
   bool finite() const { return steps.back().status != Status::NotFinite; }
 };
+
+/// What the steps took, all together.
+struct Effort {
+  double mean_iterations = 0, worst_residual = 0, steps_per_second = 0;
+  Index most_iterations = 0, refreshes = 0, missed = 0;
+
+  explicit Effort(const Simulation& run);
+};
+
+/// Its frames, of no model in a file yet. \param reduced  whether they are reduced coordinates.
+Trajectory trajectory_of(const Simulation& run, const SimulationOptions& options, bool reduced);
 
 /// From rest at t = 0. \throws SolverError if the system has no stable rest state.
 Simulation simulate_reduced(const ReducedModel& model, const Scene& scene, const SimulationOptions& options,

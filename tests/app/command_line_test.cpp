@@ -22,7 +22,7 @@ TEST_F(CommandLineTest, ExplainsItself) {
   for (const Arguments& arguments :
        {Arguments{"--help"}, Arguments{"reduce", "--help"}, Arguments{"simulate", "--help"},
         Arguments{"compare", "--help"}, Arguments{"select", "--help"}, Arguments{"info", "--help"},
-        Arguments{"mesh", "--help"}}) {
+        Arguments{"mesh", "--help"}, Arguments{"pareto", "--help"}}) {
     const Outcome outcome = supple(arguments);
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_EQ(outcome.err, "");
