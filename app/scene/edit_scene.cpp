@@ -103,7 +103,8 @@ std::vector<Handle> make_handles(const EditScene& scene, double softest_eigenval
   std::vector<Handle> handles;
   for (const HandleRegion& region : scene.handles) {
     const Index count = std::min<Index>(region.samples.value_or(100), static_cast<Index>(region.nodes.size()));
-    const double weight = region.weight.value_or(1e5 * softest_eigenvalue * mass / (2 * static_cast<double>(count)));
+    const double weight =
+        region.weight.value_or(default_handle_stiffness(softest_eigenvalue, mass) / (2 * static_cast<double>(count)));
     handles.emplace_back(region.nodes, count, weight, scene.seed + handles.size());
   }
   return handles;

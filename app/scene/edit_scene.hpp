@@ -40,7 +40,7 @@ struct EditScene {
 EditScene read_edit_scene(const std::filesystem::path& path, const Body& body);
 
 /// The handles, ready to grasp. Samples not stated: 100 a handle. Weights not stated: such that all springs of a handle
-/// together are 10⁵ times as stiff as the object against a translation along its softest mode, 10⁵ λ₁ M.
+/// together have the default_handle_stiffness().
 /// \param softest_eigenvalue  λ₁ [1/s²].  \param mass  M [kg].
 std::vector<Handle> make_handles(const EditScene& scene, double softest_eigenvalue, double mass);
 

@@ -73,8 +73,7 @@ class Editor {
   /// E^C [J].
   double control_energy(VectorIn displacement) const {
     double sum = 0;
-    for (const PointSpring& spring : handle_loads(handles_, rest_positions_).springs)
-      sum += 0.5 * spring.stiffness * (displacement.segment<3>(3 * spring.node) - spring.displacement).squaredNorm();
+    for (const Handle& handle : handles_) sum += supple::control_energy(handle, rest_positions_, displacement);
     return sum;
   }
 

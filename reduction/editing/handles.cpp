@@ -60,4 +60,26 @@ Loads handle_loads(const std::vector<Handle>& handles, const Points& rest_positi
   return loads;
 }
 
+double default_handle_stiffness(double softest_eigenvalue, double mass) {
+  return 1e5 * softest_eigenvalue * mass;
+}
+
+double control_energy(const Handle& handle, const Points& rest_positions, VectorIn displacement) {
+  double sum = 0;
+  for (const PointSpring& spring : handle_loads({handle}, rest_positions).springs)
+    sum += 0.5 * spring.stiffness * (displacement.segment<3>(3 * spring.node) - spring.displacement).squaredNorm();
+  return sum;
+}
+
+double control_displacement(const std::vector<Handle>& handles, const Points& rest_positions, VectorIn displacement,
+                            double softest_eigenvalue, double mass) {
+  double energy = 0;
+  for (const Handle& handle : handles) {
+    const double stiffness = 2 * handle.weight * static_cast<double>(handle.samples.size());
+    energy += control_energy(handle, rest_positions, displacement) *
+              std::max(1.0, stiffness / default_handle_stiffness(softest_eigenvalue, mass));
+  }
+  return std::sqrt(2 * energy / (softest_eigenvalue * mass));
+}
+
 }  // namespace supple

@@ -51,4 +51,18 @@ struct Handle {
 /// \throws std::invalid_argument for a sample that is no node.
 Loads handle_loads(const std::vector<Handle>& handles, const Points& rest_positions);
 
+/// How stiff the springs of a handle are together where nobody states it: 10⁵ times as stiff as the object against a
+/// translation along its softest mode, 10⁵ λ₁ M [N/m]. \param softest_eigenvalue  λ₁ [1/s²]. \param mass  M [kg].
+double default_handle_stiffness(double softest_eigenvalue, double mass);
+
+/// E^C of a handle on an object with these displacements of all nodes, w Σ ‖v − v'‖² [J].
+double control_energy(const Handle& handle, const Points& rest_positions, VectorIn displacement);
+
+/// What handles hold, as a length [m]: √(2 E / (λ₁ M)), how far the energy E of their springs would displace the object along
+/// its softest mode (rms). The springs of a full object hold next to nothing; those of a subspace that cannot follow its
+/// handles hold the energy by which its shape lies above the full one, so this bounds, roughly, how far off the shape is. In
+/// springs stiffer than default_handle_stiffness() the same forces hold less: E is what they would hold in those.
+double control_displacement(const std::vector<Handle>& handles, const Points& rest_positions, VectorIn displacement,
+                            double softest_eigenvalue, double mass);
+
 }  // namespace supple

@@ -4,11 +4,14 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 namespace supple::test {
 
 namespace {
 
 using nlohmann::json;
+using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr const char* bend = R"({
@@ -30,12 +33,20 @@ class EditCommandTest : public SuppleProcess {
     const Outcome outcome = supple(arguments);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
+  /// The report of an edit in a subspace that may be too small for it.
+  json edit(Arguments arguments) const {
+    arguments.insert(arguments.begin(), "edit");
+    arguments.insert(arguments.end(), {"--json", "-"});
+    const Outcome outcome = supple(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return outcome.json();
+  }
 };
 
 TEST_F(EditCommandTest, BendsABarAndKeepsWhatItReports) {
   reduce();
   write("bend.json", bend);
-  const json report = this->report({"edit", "bar.supple", "--scene", "bend.json", "-o", "bent"});
+  const json report = edit({"bar.supple", "--scene", "bend.json", "-o", "bent"});
   EXPECT_EQ(report["solves"], 5);
   EXPECT_EQ(report["missed_solves"], 0);
   EXPECT_LE(report["worst_residual"], report["tolerance"]);
@@ -50,7 +61,7 @@ TEST_F(EditCommandTest, BendsABarAndKeepsWhatItReports) {
   EXPECT_TRUE(std::filesystem::exists(folder / "bent/series.pvd"));
 
   for (const char* solver : {"bfgs", "nlopt"}) {  // the same equilibrium
-    const json other = this->report({"edit", "bar.supple", "--scene", "bend.json", "--solver", solver, "-o", solver});
+    const json other = edit({"bar.supple", "--scene", "bend.json", "--solver", solver, "-o", solver});
     EXPECT_NEAR(other["elastic_energy"].get<double>(), report["elastic_energy"].get<double>(),
                 1e-3 * report["elastic_energy"].get<double>());
     EXPECT_LT(this->report({"compare", solver, "bent"})["position_error"]["relative"], 5e-3);
@@ -61,6 +72,37 @@ TEST_F(EditCommandTest, BendsABarAndKeepsWhatItReports) {
   EXPECT_LT(this->report({"compare", "bent", "full"})["position_error"]["relative"], 0.1);
 }
 
+TEST_F(EditCommandTest, SaysWhenTheSubspaceDoesNotFollowTheHandles) {
+  ASSERT_EQ(supple({"reduce", "bar:16x3x3", "-o", "bar.supple", "--fix", "x<=0", "--full-loads", "0"}).exit_code, 0);
+  const double diagonal = std::sqrt(1 + 2 * 9.0 / 256);
+  const auto off = [&](const std::string& move) {  // farthest node from the full shape, of the diagonal
+    write("scene.json", R"({"handles": [{"name": "tip", "nodes": "x>=100%"}], "edits": [{"increments": 5, "moves":
+      [{"handle": "tip", )" +
+                            move + "}]}]}");
+    EXPECT_EQ(report({"edit", "bar.supple", "--scene", "scene.json", "--full", "-o", "full"})["missed_solves"], 0);
+    const Outcome reduced = supple({"edit", "bar.supple", "--scene", "scene.json", "-o", "reduced"});
+    EXPECT_EQ(reduced.exit_code, 0);
+    EXPECT_THAT(reduced.out, HasSubstr("handles hold"));
+    return std::pair(report({"compare", "reduced", "full"})["largest_distance"]["share_of_diagonal"].get<double>(),
+                     reduced.err);
+  };
+  const auto [right, silence] = off(R"("translation": [0, "1 cm", 0])");
+  EXPECT_LT(right, 0.003);
+  EXPECT_EQ(silence, "");
+  const auto [wrong, warning] = off(R"("axis": [0, 0, 1], "angle": "60 deg")");
+  EXPECT_GT(wrong, 0.003);
+  EXPECT_THAT(warning, AllOf(HasSubstr("does not follow the handles"), HasSubstr("--full")));
+  const json full = json::parse(read("full/report.json")), reduced = json::parse(read("reduced/report.json"));
+  EXPECT_LT(full["control_energy"], 0.05 * reduced["control_energy"].get<double>());
+  // √(2 E / (λ₁ M)), where the springs of a handle are 10⁵ λ₁ M together
+  const json& tip = reduced["handles"][0];
+  const double unit = 2 * tip["weight"].get<double>() * tip["samples"].get<double>() / 1e5;
+  EXPECT_NEAR(reduced["held_over_diagonal"].get<double>(),
+              std::sqrt(2 * reduced["control_energy"].get<double>() / unit) / diagonal, 1e-9);
+  EXPECT_NEAR(read_csv(folder / "reduced/solves.csv").numbers("held").maxCoeff(),
+              reduced["most_held_over_diagonal"].get<double>(), 1e-9);
+}
+
 TEST_F(EditCommandTest, RunsEveryCommandOnHexahedraAndQuadraticTets) {
   write("bend.json", bend);
   for (const std::string mesh : {"hexbox:8x2x2", "tet10:bar:4x1x1"}) {
@@ -69,7 +111,7 @@ TEST_F(EditCommandTest, RunsEveryCommandOnHexahedraAndQuadraticTets) {
     const Outcome made = supple({"reduce", mesh, "-o", "bar.supple", "--modes", "11", "--poses", "40", "--points", "80",
                                  "--held-out", "0", "--components", "gauss-points"});
     ASSERT_EQ(made.exit_code, 0) << made.err;
-    const json bent = report({"edit", "bar.supple", "--scene", "bend.json", "-o", "bent", "--frames", "cells"});
+    const json bent = edit({"bar.supple", "--scene", "bend.json", "-o", "bent", "--frames", "cells"});
     EXPECT_EQ(bent["missed_solves"], 0);
     EXPECT_GT(read_png(folder / "bent/picture.png").width, 600);
     EXPECT_EQ(report({"info", "bent/series_000005.vtu"})[kind], mesh.starts_with("hex") ? 32 : 24);
@@ -94,7 +136,7 @@ TEST_F(EditCommandTest, TakesHandlesByLabelsAndMotionsByMatrix) {
   write("scene.json",
         R"({"handles": [{"name": "a", "file": "bar.sel", "label": 0}, {"name": "b", "file": "bar.sel", "label": 2}],
     "edits": [{"moves": [{"handle": "b", "matrix": [1,0,0,0, 0,1,0,0.05, 0,0,1,0, 0,0,0,1]}]}]})");
-  const json report = this->report({"edit", "bar.supple", "--scene", "scene.json"});
+  const json report = edit({"bar.supple", "--scene", "scene.json"});
   EXPECT_EQ(report["handles"][0]["nodes"], 9);
   EXPECT_EQ(report["handles"][1]["nodes"], 9);
   EXPECT_GT(report["elastic_energy"], 0.0);
@@ -148,7 +190,7 @@ TEST_F(EditCommandTest, SamplesOnlyNodesThatCanMove) {
   for (int seed = 1; seed <= 8; ++seed) {  // 9 of the 18 nodes below 20 % are held
     write("scene.json", R"({"seed": )" + std::to_string(seed) + R"(, "handles": [{"name": "root", "nodes": "x<20%",
       "samples": 1}], "edits": [{"moves": [{"handle": "root", "translation": [0, 0, 0.01]}]}]})");
-    EXPECT_GT(report({"edit", "bar.supple", "--scene", "scene.json"})["elastic_energy"], 0.0) << seed;
+    EXPECT_GT(edit({"bar.supple", "--scene", "scene.json"})["elastic_energy"], 0.0) << seed;
   }
 }
 
@@ -173,7 +215,7 @@ TEST_F(EditCommandTest, EditsInEverySubspace) {
     const json info = report({"info", "bar.supple"});
     EXPECT_EQ(info["subspace"], choice[1]);
     EXPECT_GT(info["dimension"], 5);
-    EXPECT_GT(report({"edit", "bar.supple", "--scene", "bend.json"})["elastic_energy"], 0.0);
+    EXPECT_GT(edit({"bar.supple", "--scene", "bend.json"})["elastic_energy"], 0.0);
     EXPECT_EQ(supple({"simulate", "bar.supple", "--time", "0.1", "--step", "0.01", "--json", "-"}).exit_code, 0);
   }
   expect_refusal({"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "pca"}, {"--snapshots"});

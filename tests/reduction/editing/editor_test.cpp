@@ -104,6 +104,28 @@ TEST(Editor, TakesARigidMotionOfAllHandlesWithoutEnergy) {
   EXPECT_LT(editor.elastic_energy(), 1e-9);
 }
 
+TEST(Editor, TellsWhatItsHandlesHold) {
+  const HeldBar bar;
+  auto editor = bar.editor(bar.system);
+  const Point shift{0.03, 0, 0.04};
+  editor.move(1, {.translation = shift});
+  const Vector rest = Vector::Zero(3 * bar.mesh.num_nodes());
+  // ½ · 2 w ‖x − x'‖² a sample, of those at the right
+  const double count = static_cast<double>(bar.right.samples.size()), energy = count * 2000.0 * shift.squaredNorm();
+  EXPECT_NEAR(editor.control_energy(rest), energy, 1e-12 * energy);
+  EXPECT_EQ(control_energy(editor.handles()[0], bar.mesh.nodes, rest), 0);
+
+  const double mass = 3, stiffness = 2 * 2000.0 * count;  // of all springs at the right
+  const double soft = 2 * stiffness / (1e5 * mass), stiff = stiffness / (1e5 * mass) / 7;  // λ₁
+  EXPECT_NEAR(default_handle_stiffness(soft, mass), 2 * stiffness, 1e-9);
+  const auto held = [&](double eigenvalue) {
+    return control_displacement(editor.handles(), bar.mesh.nodes, rest, eigenvalue, mass);
+  };
+  EXPECT_NEAR(held(soft), std::sqrt(2 * energy / (soft * mass)), 1e-9);
+  // springs seven times as stiff as the default: what their forces would make the default ones hold
+  EXPECT_NEAR(held(stiff), std::sqrt(2 * 7 * energy / (stiff * mass)), 1e-9);
+}
+
 TEST(Editor, ExtendedModesTakeARigidMotionExactlyToo) {
   const HeldBar bar;
   const auto subspace = std::make_shared<const NodalBasis>(ExtendedModalBasis{.num_modes = 9}(bar.system));
