@@ -197,6 +197,9 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   json["training_error"] = report.training_error;
   json["held_out_error"] = report.held_out_error;
   json["equilibrium_error"] = report.equilibrium_error;
+  json["equilibrium_loads"] = report.equilibrium_loads;
+  json["equilibrium_unfinished"] = report.equilibrium_unfinished;
+  json["equilibrium_training_error"] = report.equilibrium_training_error;
   json["held_out"] = Json::array();
   const double largest = options.poses.largest_amplitude();
   for (const auto& [share, error] : report.held_out)
@@ -301,13 +304,20 @@ void print_summary(const ReduceCommand& command, const ReducedModel& model, cons
     rows.emplace_back(
         "", shown_percent(full.outside) + " outside of the subspace, " + shown_percent(full.inside) + " in it");
   }
+  if (report.equilibrium_loads > 0)
+    rows.emplace_back("fresh equilibria",
+                      shown_percent(report.equilibrium_error) + " off those fitted to, rms of " +
+                          std::to_string(report.equilibrium_loads) + " loads" +
+                          (report.equilibrium_unfinished > 0
+                               ? " (under " + std::to_string(report.equilibrium_unfinished) + " more, those find none)"
+                               : ""));
   rows.emplace_back("training error", shown_percent(report.training_error));
   std::string held_out;
   for (const auto& [share, error] : report.held_out)
     held_out += (held_out.empty() ? "" : ", ") + shown_percent(error) +
                 (share < 1 ? " at " + shown(share) + " of the amplitude" : "");
-  if (std::isfinite(report.equilibrium_error))
-    rows.emplace_back("equilibria in training", "displaced by " + shown_percent(report.equilibrium_error));
+  if (std::isfinite(report.equilibrium_training_error))
+    rows.emplace_back("equilibria in training", "displaced by " + shown_percent(report.equilibrium_training_error));
   rows.emplace_back("held-out error", held_out.empty() ? "not measured" : held_out);
   if (report.exact_eigenvalues.size() > 0)
     rows.emplace_back("softest eigenvalue",
@@ -347,13 +357,15 @@ void ReduceCommand::run() const {
     result = reduce(body, options, &report, progress_bar());
   }
   clear_progress();
-  result.provenance = {{"version", SUPPLE_VERSION},
-                       {"mesh", mesh},
-                       {"seed", std::to_string(options.seed)},
-                       {"options", options_json(*this, options, body).dump()},
-                       {"full_error", exact(report.full_error.total)},
-                       {"training_error", exact(report.training_error)},
-                       {"held_out_error", exact(report.held_out_error)}};
+  result.provenance = {
+      {"version", SUPPLE_VERSION},
+      {"mesh", mesh},
+      {"seed", std::to_string(options.seed)},
+      {"options", options_json(*this, options, body).dump()},
+      {"full_error", exact(report.full_error.total)},
+      {"equilibrium_error", exact(report.equilibrium_error)},
+      {"training_error", exact(report.training_error)},
+      {"held_out_error", exact(report.held_out_error)}};
   for (const std::string& note : report.notes) warn(note);
   if (options.target_error > 0 && report.training_error > options.target_error)
     warn("the training error is " + shown_percent(report.training_error) + ", not " +

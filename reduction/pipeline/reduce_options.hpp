@@ -91,12 +91,21 @@ struct ReduceReport {
   /// Softest flexible eigenvalues of the fitted rest stiffness and of the exact reduced one [1/s²].
   Vector fitted_eigenvalues, exact_eigenvalues;
   FullError full_error;  ///< against the full object; the other errors are against all components in the subspace
-  double equilibrium_error = 0;  ///< rms of ‖Δq‖ / ‖q‖ over the equilibria, by the model's own tangents; NaN without
+  /// Rms of ‖Δq‖ / ‖q‖ over equilibria under fresh loads such as those of the training equilibria, against those of what
+  /// was fitted to: the full object where forces relaxed (its displacements projected), else all components in the
+  /// subspace. NaN if not measured: without a potential, or without full_loads where it is the full object.
+  double equilibrium_error = nan;
+  Index equilibrium_loads = 0,
+        equilibrium_unfinished = 0;         ///< compared; left out, for the reference found no equilibrium
+  double equilibrium_training_error = nan;  ///< the same over the training equilibria, by the model's own tangents
   SelectionReport selection;
   std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order
   double total_seconds = 0;
   double peak_memory = 0;  ///< largest resident size of the process so far [bytes]
   std::vector<std::string> notes;
+
+ private:
+  static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace supple

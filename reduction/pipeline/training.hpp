@@ -9,6 +9,7 @@
 #include <reduction/pipeline/stage_clock.hpp>
 #include <reduction/system/reduced_system.hpp>
 #include <reduction/training/equilibrium_fitting.hpp>
+#include <reduction/training/exact_equilibria.hpp>
 #include <reduction/training/force_fitting.hpp>
 #include <reduction/training/relaxation.hpp>
 #include <reduction/training/training_poses.hpp>
@@ -36,13 +37,14 @@ WorkingComponents with_positive_weights(std::span<const Index> indices, VectorIn
 
 /// The seeds of what is drawn at random in a run, apart from one another. The seed of the run moves all of them.
 struct RunSeeds {
-  std::uint64_t poses, held_out, equilibria, full_loads, selection;
+  std::uint64_t poses, held_out, equilibria, full_loads, fresh_equilibria, selection;
 
   explicit RunSeeds(const ReduceOptions& options)
       : poses(options.poses.seed + 1000003 * options.seed),
         held_out(poses + 7919),
         equilibria(poses + 15485863),
         full_loads(poses + 32452843),
+        fresh_equilibria(poses + 49979687),
         selection(options.seed) {}
 };
 
@@ -141,6 +143,12 @@ TrainingPoses training_poses(const ReducedObject<Model, S>& object, const PoseOp
                         object.traits.inverted);
 }
 
+/// How far equilibria of a system are from those of a reference under the same loads; loads under which that finds none are
+/// halved, twice at most. \param linear  linear responses to the loads, d × T. \param reference  from linear responses
+/// and equilibria of the system to its own.
+FullError distance_from(const std::function<FullStates(const Matrix& linear, const Matrix& reduced)>& reference,
+                        const AnySystem<Matrix>& system, const ReducedModes& modes, Matrix linear);
+
 /// Null for forces without a potential.
 template <ForceModel F, Subspace S>
 std::shared_ptr<const Relaxation> relaxation_of(const ReducedObject<F, S>& object) {
@@ -168,11 +176,11 @@ Matrix soft_responses(const ReducedObject<Model, S>& object, Index num_modes, In
   return Q;
 }
 
-/// The linear responses to the loads of the equilibria. \param poses  those of training. \return d × T
+/// The linear responses to random loads such as those of the equilibria. \return d × count
 template <ForceModel Model, Subspace S>
-Matrix equilibrium_loads(const ReducedObject<Model, S>& object, PoseOptions poses, const RunSeeds& seeds,
+Matrix equilibrium_loads(const ReducedObject<Model, S>& object, Index count, std::uint64_t seed,
                          const ReduceOptions& options) {
-  const Index count = object.traits.equilibria;
+  PoseOptions poses = options.poses;
   std::vector<double> amplitudes = options.equilibrium_amplitudes;
   if (amplitudes.empty()) {
     const double largest = poses.largest_amplitude();
@@ -183,22 +191,21 @@ Matrix equilibrium_loads(const ReducedObject<Model, S>& object, PoseOptions pose
   if (options.relaxed) {
     const SubspaceReport& made = object.subspace->report;
     const Index num_modes = made.omega.size() > 0 ? made.omega.size() - made.rigid_modes : object.subspace->dim();
-    return soft_responses(object, num_modes, count, amplitudes, seeds.equilibria);
+    return soft_responses(object, num_modes, count, amplitudes, seed);
   }
   poses.count = count;
   poses.amplitudes = amplitudes;
-  poses.seed = seeds.equilibria;
+  poses.seed = seed;
   poses.inverted = InvertedPoses::Keep;  // nothing is trained on them
   return sample_poses(object, poses).Q;
 }
 
 /// Poses in equilibrium of a rough selection. \throws std::invalid_argument for forces without a potential.
-/// \param poses  those of training.  \param relaxation  of the object, or null: nothing relaxes.
+/// \param relaxation  of the object, or null: nothing relaxes.
 template <ForceModel Model, Subspace S>
 EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& object,
-                                            const ForceFitting<Model, S>& fitting, const PoseOptions& poses,
-                                            const RunSeeds& seeds, const ReduceOptions& options,
-                                            const Relaxation* relaxation) {
+                                            const ForceFitting<Model, S>& fitting, const RunSeeds& seeds,
+                                            const ReduceOptions& options, const Relaxation* relaxation) {
   if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
     const auto& model = object.system->shared_model();
     const ObjectTraits& traits = object.traits;
@@ -206,7 +213,7 @@ EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& objec
     const WorkingComponents working =
         working_components(BatchedGreedy{.seed = seeds.selection}(AnyProblem(fitting), size), "batched-greedy");
     const AnySystem<Matrix> rough = object.any_system(working.indices, working.weights);
-    const Matrix linear = equilibrium_loads(object, poses, seeds, options);
+    const Matrix linear = equilibrium_loads(object, traits.equilibria, seeds.equilibria, options);
     const Matrix at_rest =
         treat_inverted(model, *object.subspace, equilibrium_poses(rough, object.modes, linear), traits.inverted).Q;
     const Matrix targets = relaxation ? relaxation->relaxed(at_rest).forces : Matrix();
@@ -262,7 +269,7 @@ Training<Model, S> train(std::shared_ptr<const FullSystem<Model>> system, std::s
     stage("equilibria", [&](auto) {
       if (options.relaxed) training.relaxation = relaxation_of(training.object);
       training.equilibria =
-          fit_equilibria(training.object, training.fitting, pose_options, seeds, options, training.relaxation.get());
+          fit_equilibria(training.object, training.fitting, seeds, options, training.relaxation.get());
     });
   return training;
 }

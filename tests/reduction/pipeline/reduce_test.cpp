@@ -3,9 +3,11 @@
 #include <core/parallel.hpp>
 #include <core/tensor_file.hpp>
 #include <physics/body/material_law.hpp>
+#include <reduction/basis/modal_basis.hpp>
 #include <reduction/model/with_reduced_system.hpp>
 #include <reduction/pipeline/reduce.hpp>
 #include <reduction/pipeline/reduction.hpp>
+#include <reduction/system/galerkin_system.hpp>
 #include <sparse/selectors/selector_library.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
@@ -535,6 +537,53 @@ TEST(Reduce, IsTheFullObjectWhereNothingIsReduced) {
       reduce(full, std::make_shared<const DenseBasis>(std::move(everything)), AnySelector(options.selector), options);
   EXPECT_EQ(reduced.report.full_error.loads, 3);
   EXPECT_LT(reduced.report.full_error.total, 1e-4);
+  EXPECT_EQ(reduced.report.equilibrium_loads, 24);
+  EXPECT_LT(reduced.report.equilibrium_error, 1e-4);
+}
+
+// Thirty further loads, by Newton's method on all components, say the same to within a factor of 1.5.
+TEST(Reduce, MeasuresEquilibriaUnderFreshLoads) {
+  const auto full = std::make_shared<const StvkBar>(clamped_bar());
+  const auto basis = std::make_shared<const NodalBasis>(ExtendedModalBasis{.num_modes = 4}(*full));
+  ReduceOptions options = quick(24);
+  options.equilibria = 16;
+  const auto reduced = reduce(full, basis, NnSp{}, options);
+  const ReduceReport& report = reduced.report;
+  EXPECT_EQ(report.equilibrium_loads, 24);
+  EXPECT_GT(report.equilibrium_training_error, 0);
+
+  const auto fitted = reduced.system();
+  const GalerkinSystem exact(full, basis);
+  const ReducedModes modes = reduced_modes(reduced.rest_stiffness);
+  const double diagonal = bounding_box(full->model().rest_positions()).diagonal();
+  const Matrix linear = sample_poses(full->shared_model(), *basis, modes, full->nodal_mass().sum(), diagonal,
+                                     {.count = 30, .amplitudes = {0.15, 0.05, 0.015}, .seed = 12345})
+                            .Q;
+  double sum = 0;
+  for (Index t = 0; t < 30; ++t) {
+    const Vector load = reduced.rest_stiffness * linear.col(t);
+    Vector q = Vector::Zero(basis->dim());
+    ASSERT_EQ(StaticSolver(fitted).solve({load, {}}, q).status, Status::Converged);
+    Vector q_exact = q;
+    ASSERT_EQ(StaticSolver(exact).solve({load, {}}, q_exact).status, Status::Converged);
+    sum += (q_exact - q).squaredNorm() / q_exact.squaredNorm();
+  }
+  const double expected = std::sqrt(sum / 30);
+  EXPECT_GT(expected, 0.01);
+  EXPECT_LT(report.equilibrium_error, 1.5 * expected);
+  EXPECT_GT(report.equilibrium_error, expected / 1.5);
+}
+
+TEST(Reduce, MeasuresRelaxedEquilibriaAgainstTheFullObject) {
+  ReduceOptions options = ReduceOptions::relaxed_derivatives(8);
+  ReduceReport report;
+  (void)reduce(bar_solid(), options, &report);
+  EXPECT_EQ(report.equilibrium_loads + report.equilibrium_unfinished, 12);
+  EXPECT_GT(report.equilibrium_error, 0.3 * report.full_error.inside);  // loads of other modes and sizes
+  EXPECT_LT(report.equilibrium_error, 4 * report.full_error.inside);
+  options.full_loads = 0;
+  (void)reduce(bar_solid(), options, &report);
+  EXPECT_TRUE(std::isnan(report.equilibrium_error));
 }
 
 // Linear modes alone hold an object tightest: a bar that bends must stretch in them.
