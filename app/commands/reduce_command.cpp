@@ -211,6 +211,10 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   json["modes"] = {{"omega", json_numbers(report.omega)}, {"rigid", report.rigid_modes}, {"dropped", report.dropped}};
   json["eigenvalues"] = {{"fitted", json_numbers(report.fitted_eigenvalues)},
                          {"exact", json_numbers(report.exact_eigenvalues)}};
+  json["rest_stiffness"] = {{"smallest", report.rest_stiffness.smallest},
+                            {"largest", report.rest_stiffness.largest},
+                            {"sound", report.rest_stiffness.is_sound()},
+                            {"points_for_sound", report.points_for_sound_stiffness}};
   const SelectionReport& selection = report.selection;
   json["selection"] = {{"selector", options.selector},
                        {"status", to_string(selection.status)},
@@ -322,6 +326,15 @@ void print_summary(const ReduceCommand& command, const ReducedModel& model, cons
   if (report.exact_eigenvalues.size() > 0)
     rows.emplace_back("softest eigenvalue",
                       shown_percent(report.fitted_eigenvalues[0] / report.exact_eigenvalues[0] - 1, 2) + " off");
+  if (const StiffnessRange& range = report.rest_stiffness; range.largest > 0) {
+    rows.emplace_back("stiffness at rest",
+                      shown(range.smallest, 3) + " to " + shown(range.largest, 3) + " of the exact one");
+    if (!range.is_sound())
+      rows.emplace_back(
+          "", report.points_for_sound_stiffness > 0
+                  ? "0.7 to 1.3 would take about " + std::to_string(report.points_for_sound_stiffness) + " points"
+                  : "more points would not bring it to 0.7 to 1.3: forces relaxed");
+  }
   rows.emplace_back("selection", shown_iterations(report.selection.iterations) + ", " + report.selection.stop_reason);
   rows.emplace_back("peak memory", shown_bytes(report.peak_memory));
   rows.emplace_back("model", command.model.string());
@@ -364,6 +377,7 @@ void ReduceCommand::run() const {
       {"options", options_json(*this, options, body).dump()},
       {"full_error", exact(report.full_error.total)},
       {"equilibrium_error", exact(report.equilibrium_error)},
+      {"rest_stiffness", exact(report.rest_stiffness.smallest) + " " + exact(report.rest_stiffness.largest)},
       {"training_error", exact(report.training_error)},
       {"held_out_error", exact(report.held_out_error)}};
   for (const std::string& note : report.notes) warn(note);

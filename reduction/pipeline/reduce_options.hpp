@@ -3,6 +3,7 @@
 
 #include <core/types.hpp>
 #include <reduction/basis/subspace_choice.hpp>
+#include <reduction/system/stiffness_range.hpp>
 #include <reduction/training/pose_options.hpp>
 #include <sparse/selection/selection.hpp>
 
@@ -98,6 +99,11 @@ struct ReduceReport {
   Index equilibrium_loads = 0,
         equilibrium_unfinished = 0;         ///< compared; left out, for the reference found no equilibrium
   double equilibrium_training_error = nan;  ///< the same over the training equilibria, by the model's own tangents
+  /// Of the fitted stiffness at rest against the exact reduced one, over all d directions that have energy.
+  StiffnessRange rest_stiffness;
+  /// About how many components would make that sound; 0 where it is, or where forces relaxed: what those are fitted to is
+  /// not the stiffness of the subspace, and more components come no nearer to it.
+  Index points_for_sound_stiffness = 0;
   SelectionReport selection;
   std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order
   double total_seconds = 0;

@@ -59,6 +59,7 @@ struct SelectionChecks {
   double training_error = 0, equilibrium_training_error = 0;
   std::vector<std::pair<double, double>> held_out = {};  ///< share of the amplitude and error
   Vector fitted_eigenvalues = {}, exact_eigenvalues = {};
+  StiffnessRange rest_stiffness = {};
 };
 template <ForceModel Model, Subspace S>
 SelectionChecks check(const Training<Model, S>& training, const WorkingComponents& working) {
@@ -69,9 +70,10 @@ SelectionChecks check(const Training<Model, S>& training, const WorkingComponent
                                           : std::numeric_limits<double>::quiet_NaN();
   for (const auto& [part, problem] : training.held_out)
     checks.held_out.emplace_back(part, problem.error(working.indices, working.weights));
-  const auto reduced = training.object.reduced_system(working.indices, working.weights);
+  const Matrix fitted = training.object.stiffness_at_rest(working);
   checks.exact_eigenvalues = training.object.softest_eigenvalues(training.object.rest_stiffness);
-  checks.fitted_eigenvalues = training.object.softest_eigenvalues(reduced.stiffness(Vector::Zero(reduced.dim())));
+  checks.fitted_eigenvalues = training.object.softest_eigenvalues(fitted);
+  checks.rest_stiffness = stiffness_range(fitted, training.object.modes);
   return checks;
 }
 
@@ -158,6 +160,10 @@ Reduction<Model, S> reduce(const Training<Model, S>& training, const Selector& s
       report.equilibrium_loads = error.loads;
       report.equilibrium_unfinished = error.unfinished;
     });
+  report.rest_stiffness = checks.rest_stiffness;
+  if (!checks.rest_stiffness.is_sound() && !training.relaxation)
+    report.points_for_sound_stiffness = std::min(
+        training.fitting.cols(), checks.rest_stiffness.points_for_sound(static_cast<Index>(working.indices.size())));
   if (full.unfinished > 0)
     report.notes.push_back("equilibria of the full object under " + std::to_string(full.unfinished) + " of " +
                            std::to_string(options.full_loads) +

@@ -8,6 +8,7 @@
 #include <reduction/pipeline/reduce_options.hpp>
 #include <reduction/pipeline/stage_clock.hpp>
 #include <reduction/system/reduced_system.hpp>
+#include <reduction/system/stiffness_range.hpp>
 #include <reduction/training/equilibrium_fitting.hpp>
 #include <reduction/training/exact_equilibria.hpp>
 #include <reduction/training/force_fitting.hpp>
@@ -64,6 +65,10 @@ struct ReducedObject {
   /// The same as a value, for what need not be compiled for each type of system.
   AnySystem<Matrix> any_system(std::span<const Index> indices, VectorIn weights) const {
     return AnySystem<Matrix>(std::make_shared<const ReducedSystem<F, S>>(reduced_system(indices, weights)));
+  }
+  /// K̃(0) of a selection, d × d [1/s²].
+  Matrix stiffness_at_rest(const WorkingComponents& working) const {
+    return reduced_system(working.indices, working.weights).stiffness(Vector::Zero(subspace->dim()));
   }
   /// Softest flexible eigenvalues of a reduced stiffness at rest, at most `count` [1/s²].
   Vector softest_eigenvalues(const Matrix& stiffness, Index count = 5) const;

@@ -11,6 +11,7 @@ namespace supple::test {
 namespace {
 
 using nlohmann::json;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -331,6 +332,13 @@ TEST_F(ReduceCommandTest, TakesSurfacesAsShells) {
   EXPECT_GT(report["mesh"]["flaps"], 100);
   EXPECT_EQ(report["options"]["equilibria"], 6);
   EXPECT_LT(report["equilibrium_training_error"], 0.2);
+  // few points for a shell, which is too soft somewhere: the report says so, and what it would take
+  const json& stiffness = report["rest_stiffness"];
+  EXPECT_LT(stiffness["smallest"], 0.7);
+  EXPECT_EQ(stiffness["sound"], false);
+  const Outcome told = supple(plate());
+  EXPECT_THAT(told.out, AllOf(HasSubstr("stiffness at rest"), HasSubstr("0.7 to 1.3 would take")));
+  EXPECT_EQ(this->report({"info", "plate.supple"})["provenance"].count("rest_stiffness"), 1u);
   EXPECT_EQ(this->report({"reduce", "plate:12x6", "-o", "free.supple", "--modes", "8", "--poses", "20", "--points",
                           "60", "--held-out", "0", "--recipe", "subspace"})["options"]["equilibria"],
             0);  // free shells have none

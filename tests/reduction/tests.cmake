@@ -3,6 +3,7 @@ supple_test(subspace LABEL unit LINKS supple::reduction
 supple_test(bases LABEL unit LINKS supple::reduction SOURCES reduction/basis/bases_test.cpp)
 supple_test(modal_derivatives LABEL unit LINKS supple::reduction SOURCES reduction/basis/modal_derivatives_test.cpp)
 supple_test(reduced_system LABEL unit LINKS supple::reduction SOURCES reduction/system/reduced_system_test.cpp)
+supple_test(stiffness_range LABEL unit LINKS supple::reduction SOURCES reduction/system/stiffness_range_test.cpp)
 supple_test(force_fitting LABEL unit LINKS supple::reduction SOURCES reduction/training/force_fitting_test.cpp)
 supple_test(equilibrium_fitting LABEL unit LINKS supple::reduction
   SOURCES reduction/training/equilibrium_fitting_test.cpp)

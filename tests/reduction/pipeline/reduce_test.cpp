@@ -539,6 +539,8 @@ TEST(Reduce, IsTheFullObjectWhereNothingIsReduced) {
   EXPECT_LT(reduced.report.full_error.total, 1e-4);
   EXPECT_EQ(reduced.report.equilibrium_loads, 24);
   EXPECT_LT(reduced.report.equilibrium_error, 1e-4);
+  EXPECT_NEAR(reduced.report.rest_stiffness.smallest, 1, 1e-4);
+  EXPECT_NEAR(reduced.report.rest_stiffness.largest, 1, 1e-4);
 }
 
 // Thirty further loads, by Newton's method on all components, say the same to within a factor of 1.5.
@@ -584,6 +586,20 @@ TEST(Reduce, MeasuresRelaxedEquilibriaAgainstTheFullObject) {
   options.full_loads = 0;
   (void)reduce(bar_solid(), options, &report);
   EXPECT_TRUE(std::isnan(report.equilibrium_error));
+}
+
+TEST(Reduce, SaysAboutHowManyPointsTheStiffnessAtRestTakes) {
+  ReduceReport few, about, more;
+  (void)reduce(bar_solid(), quick(30), &few);
+  const Index points = few.points_for_sound_stiffness;
+  ASSERT_FALSE(few.rest_stiffness.is_sound());
+  ASSERT_GT(points, 30);
+  ASSERT_LT(3 * points / 2, few.components);
+  (void)reduce(bar_solid(), quick(points), &about);
+  EXPECT_LT(about.rest_stiffness.deviation(), 0.4);
+  (void)reduce(bar_solid(), quick(3 * points / 2), &more);
+  EXPECT_TRUE(more.rest_stiffness.is_sound());
+  EXPECT_EQ(more.points_for_sound_stiffness, 0);
 }
 
 // Linear modes alone hold an object tightest: a bar that bends must stretch in them.
