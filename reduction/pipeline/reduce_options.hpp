@@ -92,9 +92,9 @@ struct ReduceReport {
   /// Softest flexible eigenvalues of the fitted rest stiffness and of the exact reduced one [1/s²].
   Vector fitted_eigenvalues, exact_eigenvalues;
   FullError full_error;  ///< against the full object; the other errors are against all components in the subspace
-  /// Rms of ‖Δq‖ / ‖q‖ over equilibria under fresh loads such as those of the training equilibria, against those of what
-  /// was fitted to: the full object where forces relaxed (its displacements projected), else all components in the
-  /// subspace. NaN if not measured: without a potential, or without full_loads where it is the full object.
+  /// Rms of ‖Δq‖ / ‖q‖ over equilibria under fresh loads against those of what was fitted to: under loads such as those of the
+  /// training equilibria all components in the subspace, or, where forces relaxed, the full object: full_error.inside.
+  /// NaN if not measured: without a potential, or without full_loads where it is the full object.
   double equilibrium_error = nan;
   Index equilibrium_loads = 0,
         equilibrium_unfinished = 0;         ///< compared; left out, for the reference found no equilibrium
