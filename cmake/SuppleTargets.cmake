@@ -10,7 +10,6 @@ function(supple_library name)
     set(scope PUBLIC)
     target_link_libraries(${target} PRIVATE ${ARG_PRIVATE_LINKS})
     supple_build_options(${target})
-    supple_precompile(${target})
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -31,15 +30,6 @@ function(supple_library name)
   set_property(GLOBAL APPEND PROPERTY supple_floors ${name})
   set_property(GLOBAL APPEND_STRING PROPERTY supple_floors_text
     "set(supple_${name}_stands_on ${floors})\nset(supple_${name}_finds \"${finds}\")\n")
-endfunction()
-
-# What nearly every file includes, and the headers that are named, parsed once for all files of a target; for builds of our
-# own only, and unless CMAKE_DISABLE_PRECOMPILE_HEADERS is set.
-function(supple_precompile target)
-  if(PROJECT_IS_TOP_LEVEL)
-    target_precompile_headers(${target} PRIVATE
-      <algorithm> <cmath> <functional> <memory> <string> <vector> <Eigen/Core> <Eigen/SparseCore> ${ARGN})
-  endif()
 endfunction()
 
 # Headers alone, used when compiling a target and unknown to whoever links it.

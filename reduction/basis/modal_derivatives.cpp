@@ -147,8 +147,9 @@ DenseBasis ModalDerivatives::operator()(const RestState& object) const {
               " rigid ones, but the system has only " + std::to_string(object.mass.size()) + " unknowns");
   const VibrationModes modes =
       vibration_modes(object, {parts.num_rigid_modes() + num_modes, tolerance, seed, progress});
-  const ModalDerivativeVectors derivatives =
-      modal_derivatives(object, modes, derivative_tolerance, progress, num_pairs);
+  require(num_derivatives >= 0, "number of derivatives is " + std::to_string(num_derivatives) + ", expected 0 or more");
+  const Index pairs = num_pairs != 0 || dimension > 0 ? num_pairs : 2 * num_derivatives;
+  const ModalDerivativeVectors derivatives = modal_derivatives(object, modes, derivative_tolerance, progress, pairs);
   const Vector mass = object.mass_of_rows();
   SubspaceReport report = modes.report();
   if (derivatives.residual > derivative_tolerance)
@@ -188,7 +189,6 @@ DenseBasis ModalDerivatives::operator()(const RestState& object) const {
     coordinates.col(k) *= lambda_1 * lambda_1 / (lambda[derivatives.pairs[k][0]] * lambda[derivatives.pairs[k][1]]);
   const Eigen::JacobiSVD<Matrix> svd(coordinates, Eigen::ComputeThinU);
   report.singular_values = svd.singularValues();
-  require(num_derivatives >= 0, "number of derivatives is " + std::to_string(num_derivatives) + ", expected 0 or more");
   const Index asked = dimension > 0 ? dimension - kept : num_derivatives > 0 ? num_derivatives : added.cols();
   const Index wanted = std::min(asked, added.cols());
   if (dimension > kept + added.cols())

@@ -33,10 +33,11 @@ struct ModalDerivatives {
   /// what the derivatives add to the modes, in the mass norm, with θ_ij weighted by λ₁² / (λ_i λ_j), λ = ω²:
   /// the spread of a response to loads that excite low frequencies most. Subspaces of growing d are nested.
   Index dimension = 0;
-  Index num_derivatives = 0;   ///< where `dimension` is 0: of these components, whatever else there is; 0: all
-  Index num_pairs = 0;         ///< derivatives computed: of the pairs of modes with the largest weights; 0: of all
-  bool affine_fields = false;  ///< free parts bring all 12 affine motions instead of the 6 rigid ones
-  double tolerance = 1e-8;     ///< of modes, relative residuals
+  Index num_derivatives = 0;  ///< where `dimension` is 0: of these components, whatever else there is; 0: all
+  /// Derivatives computed: of the pairs of modes with the largest weights; 0: of twice `num_derivatives`, or of all.
+  Index num_pairs = 0;
+  bool affine_fields = false;          ///< free parts bring all 12 affine motions instead of the 6 rigid ones
+  double tolerance = 1e-8;             ///< of modes, relative residuals
   double derivative_tolerance = 1e-5;  ///< of derivatives, ‖K θ + H‖ / ‖H‖
   std::uint64_t seed = 1;
   Progress progress = {};

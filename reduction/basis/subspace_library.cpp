@@ -68,7 +68,8 @@ NamedSubspace derivatives() {
           .add("num_derivatives", &ModalDerivatives::num_derivatives,
                "leading components of the derivatives beside modes and free motions, without --dimension; 0: all")
           .add("num_pairs", &ModalDerivatives::num_pairs,
-               "derivatives computed, of the pairs of modes with the largest weights; 0: of all")
+               "derivatives computed, of the pairs of modes with the largest weights; 0: of twice num_derivatives, or "
+               "of all")
           .add("affine_fields", &ModalDerivatives::affine_fields, "whether free parts bring all 12 affine motions"),
       "modes and derivatives");
 }

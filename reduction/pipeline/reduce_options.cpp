@@ -22,9 +22,7 @@ ReduceOptions ReduceOptions::paper() {
 
 ReduceOptions ReduceOptions::relaxed_derivatives(Index modes) {
   ReduceOptions options;
-  const Index components = std::max<Index>(1, 7 * modes / 2);
-  options.subspace =
-      "derivatives:num_derivatives=" + std::to_string(components) + ":num_pairs=" + std::to_string(2 * components);
+  options.subspace = "derivatives:num_derivatives=" + std::to_string(std::max<Index>(1, 7 * modes / 2));
   options.modes = modes;
   options.points = 0;
   options.relaxed = true;

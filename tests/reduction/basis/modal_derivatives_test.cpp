@@ -294,6 +294,7 @@ TEST(ModalDerivatives, OfFewPairsAreThoseOfTheSoftestModes) {
   }
   EXPECT_EQ((ModalDerivatives{.num_modes = 5, .num_pairs = 7}(system).dim()), 6 + 5 + 7);
   EXPECT_EQ((ModalDerivatives{.num_modes = 5, .num_pairs = 99}(system).dim()), 6 + 5 + 15);
+  EXPECT_EQ((ModalDerivatives{.num_modes = 5, .num_derivatives = 4}(system).report.singular_values.size()), 8);
   EXPECT_THROW((void)(ModalDerivatives{.num_modes = 5, .num_pairs = -1}(system)), std::invalid_argument);
 }
 
