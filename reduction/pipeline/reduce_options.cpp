@@ -26,6 +26,7 @@ ReduceOptions ReduceOptions::relaxed_derivatives(Index modes) {
   options.modes = modes;
   options.points = 0;
   options.relaxed = true;
+  options.selector = "nn-sp:max_iterations=24";  // more lower the training error, not the one against the full object
   options.poses.count = 100;
   options.poses.amplitudes = {0.002};
   options.equilibria = 32;
