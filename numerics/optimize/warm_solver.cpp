@@ -61,10 +61,12 @@ template <typename MatrixType>
 SolveReport WarmSolver<MatrixType>::run(const WarpedBfgs& bfgs, Objective& objective, Vector& u,
                                         const SolveLimits& limits) {
   if (!has_value(objective)) return run(Newton{}, objective, u, limits);
-  const SolveLimits few{limits.tolerance, std::min(limits.max_iterations, bfgs.max_iterations)};
-  const SolveReport first = run(LineSearchBfgs{.memory = bfgs.memory}, objective, u, few);
+  const Vector start = u;
+  const Index few = std::min(limits.max_iterations / 2, bfgs.max_iterations);
+  const SolveReport first = run(LineSearchBfgs{.memory = bfgs.memory}, objective, u, {limits.tolerance, few});
   if (first.status == Status::Converged || first.status == Status::NotFinite) return first;
-  SolveReport report = Newton{}(objective, tangent_, u, limits);
+  u = start;
+  SolveReport report = Newton{}(objective, tangent_, u, {limits.tolerance, limits.max_iterations - first.iterations});
   report.iterations += first.iterations;
   return report;
 }

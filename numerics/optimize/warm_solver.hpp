@@ -12,7 +12,7 @@
 namespace supple {
 
 /// LineSearchBfgs for full objects, whose Hessian is dear to factorise: only the one at rest is, and turns with the nodes.
-/// Where a load has no potential, or this does not converge, Newton's method goes on from there.
+/// Where a load has no potential, or this does not converge, Newton's method takes over.
 struct WarpedBfgs {
   Index memory = 20;          ///< steps kept
   Index max_iterations = 30;  ///< about what Newton's method takes the time of, where that has to go on

@@ -51,8 +51,7 @@ struct WithoutFrames : System {
   std::vector<BlockRotations> frames(MatrixIn) const = delete;
 };
 
-// Turned about its clamped end by a half circle's worth of bending, a slender bar hardly strains: its Hessian is that at rest,
-// turned.
+// A slender bar that bends far hardly strains: its Hessian is that at rest, turned.
 TEST(StaticSolver, AHessianThatTurnsWithTheNodesSavesIterations) {
   const TetMesh mesh = kuhn_box(16, 1, 1, 0.1);
   const System system(
@@ -71,19 +70,19 @@ TEST(StaticSolver, AHessianThatTurnsWithTheNodesSavesIterations) {
   EXPECT_EQ(warped.status, Status::Converged);
   EXPECT_EQ(warped.tangents, 0);
   EXPECT_TRUE(is_near(turned, u, 1e-5 * u.norm()));
-  EXPECT_LT(2 * warped.iterations, solve(WithoutFrames{system}, LineSearchBfgs{}, unturned).iterations);
+  EXPECT_LT(3 * warped.iterations, 2 * solve(WithoutFrames{system}, LineSearchBfgs{}, unturned).iterations);
 }
 
-TEST(StaticSolver, NewtonsMethodGoesOnWhereWarpedStepsDoNotSuffice) {
+TEST(StaticSolver, NewtonsMethodTakesOverWhereWarpedStepsDoNotSuffice) {
   const PulledBar bar;
   Vector expected = Vector::Zero(bar.system.dim()), u = expected;
   StaticSolver newton(bar.system, {.tolerance = 1e-9});
   const SolveReport alone = newton.solve(bar.load(0.13), expected);
-  StaticSolver warped(bar.system, {.solver = WarpedBfgs{}, .tolerance = 1e-9, .max_iterations = alone.iterations});
+  StaticSolver warped(bar.system, {.solver = WarpedBfgs{.max_iterations = 3}, .tolerance = 1e-9});
   const SolveReport report = warped.solve(bar.load(0.13), u);
   EXPECT_EQ(report.status, Status::Converged);
-  EXPECT_GT(report.tangents, 0);
-  EXPECT_GT(report.iterations, alone.iterations);
+  EXPECT_EQ(report.tangents, alone.tangents);
+  EXPECT_EQ(report.iterations, 3 + alone.iterations);
   EXPECT_TRUE(is_near(u, expected, 1e-6 * expected.norm()));
   // and the next solve begins at rest again
   StaticSolver patient(bar.system, {.solver = WarpedBfgs{}, .tolerance = 1e-9});
