@@ -248,8 +248,10 @@ void draw_selection(const std::filesystem::path& path, const ReducedModel& model
   PictureObject object{.positions = surface.rows(nodes), .triangles = surface.triangles};
   object.markers = centres;
   object.caption = std::to_string(report.points) + " of " + shown_count(report.components) + " " +
-                   std::string(component_name(model.body)) + ", training error " +
-                   shown_percent(report.training_error, 2);
+                   std::string(component_name(model.body)) +
+                   (report.full_error.loads > 0
+                        ? ", equilibria " + shown_percent(report.full_error.total, 2) + " off the full object"
+                        : ", training error " + shown_percent(report.training_error, 2));
   write_picture(path, {object});
 }
 
