@@ -2,6 +2,7 @@
 // Venant–Kirchhoff chosen when compiling. Medians of interleaved rounds, so that a busy machine is busy for all.
 //
 //   $ benchmark_materials
+#include <core/median.hpp>
 #include <core/stopwatch.hpp>
 #include <io/builtin/builtin_meshes.hpp>
 #include <io/mesh/node_sets.hpp>
@@ -50,11 +51,6 @@ struct Entry {
   std::function<void()> force, tangent;
   std::vector<double> force_seconds = {}, tangent_seconds = {};
 };
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 double seconds_of(const std::function<void()>& work, int repetitions) {
   const Stopwatch watch;

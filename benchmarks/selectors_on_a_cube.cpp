@@ -2,6 +2,7 @@
 // smooth basis of d = 45, T = 100 random poses, and 50 more that none of them sees. Prints CSV, medians over
 // seeds. Arguments: s, as many as wanted (50 100 200); one thread, so that times compare.
 
+#include <core/median.hpp>
 #include <core/parallel.hpp>
 #include <sparse/selectors/selectors.hpp>
 #include <tests/sparse/problems.hpp>
@@ -10,15 +11,6 @@
 #include <cstdlib>
 
 using namespace supple;
-
-namespace {
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   set_num_threads(1);

@@ -3,6 +3,7 @@
 // JSON object.
 //
 //   $ benchmark_table1 dragon.msh --fix 'y<4%' --recipe paper --points 150
+#include <core/median.hpp>
 #include <core/random.hpp>
 #include <core/stopwatch.hpp>
 #include <io/builtin/builtin_meshes.hpp>
@@ -23,11 +24,6 @@ using namespace supple;
 using nlohmann::json;
 
 namespace {
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 /// Median microseconds of a call, in batches that last long enough to time.
 template <typename Call>

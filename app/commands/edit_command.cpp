@@ -8,6 +8,7 @@
 #include <app/scene/frames.hpp>
 #include <app/scene/solver_names.hpp>
 #include <core/check.hpp>
+#include <core/median.hpp>
 #include <core/parallel.hpp>
 #include <core/peak_memory.hpp>
 #include <core/stopwatch.hpp>
@@ -181,8 +182,7 @@ void EditCommand::run() const {
     strained += solve.held > held_at_most;
     most_held = std::max(most_held, solve.held);
   }
-  std::nth_element(solve_seconds.begin(), solve_seconds.begin() + solve_seconds.size() / 2, solve_seconds.end());
-  const double median = solve_seconds[solve_seconds.size() / 2];
+  const double median_seconds = median(std::move(solve_seconds));
   const SolveRecord& last = result.solves.back();
   Json report;
   report["command"] = "edit";
@@ -203,7 +203,7 @@ void EditCommand::run() const {
   report["missed_solves"] = missed;
   report["mean_iterations"] = static_cast<double>(iterations) / static_cast<double>(result.solves.size());
   report["worst_residual"] = worst;
-  report["median_solve_seconds"] = median;
+  report["median_solve_seconds"] = median_seconds;
   report["reconstruction_seconds"] = reconstruction;
   report["elastic_energy"] = last.elastic;
   report["control_energy"] = last.control;
@@ -219,7 +219,7 @@ void EditCommand::run() const {
               {"solves", std::to_string(result.solves.size()) + " by " +
                              std::string(name_of_solver(static_solvers, options.solver)) + ", " +
                              shown(report["mean_iterations"].get<double>(), 3) + " iterations each, median " +
-                             shown(1e3 * median, 3) + " ms"},
+                             shown(1e3 * median_seconds, 3) + " ms"},
               {"residual", "at most " + shown(worst, 2) + ", asked for " + shown(options.tolerance)},
               {"energy", shown(last.elastic) + " J elastic, " + shown(last.control) + " J of the handles"},
               {"handles hold", "as much as displaces the softest mode by " + shown_percent(last.held, 2) +

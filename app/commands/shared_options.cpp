@@ -177,13 +177,13 @@ void declare_fitting(CLI::App& command, ProblemOptions& problem) {
   command
       .add_option("--equilibria", problem.equilibria,
                   "Further poses, in equilibrium, where errors count as displacements [a third of the poses; free "
-                  "shells, paper: 0; relaxed: 48]")
+                  "shells, paper: 0; relaxed: 32]")
       ->check(whole_number(0))
       ->type_name("N")
       ->group(method_group);
   command
       .add_option("--held-out", problem.held_out,
-                  "Fresh poses to measure the error on, at each of three amplitudes; 0: none [100]")
+                  "Fresh poses to measure the error on, at each of three amplitudes; 0: none [100; relaxed: 50]")
       ->type_name("N")
       ->group(method_group);
 }

@@ -1,7 +1,7 @@
 #include <app/scene/comparison.hpp>
 #include <app/scene/motion_study.hpp>
+#include <core/median.hpp>
 
-#include <algorithm>
 #include <limits>
 
 namespace supple {
@@ -14,13 +14,6 @@ constexpr int most_runs = 10;
 void add_seconds(const Simulation& run, std::vector<double>& seconds) {
   for (std::size_t k = 1; k < run.steps.size(); ++k)
     if (run.steps[k].status != Status::NotFinite) seconds.push_back(run.steps[k].seconds);
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <core/median.hpp>
 #include <core/peak_memory.hpp>
 #include <reduction/pipeline/body_training.hpp>
 #include <reduction/pipeline/selection_study.hpp>
@@ -7,6 +8,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 namespace supple {
 
@@ -24,8 +26,7 @@ double median_seconds(const Call& call) {
     for (; watch.seconds() < 1e-3; ++calls) call();
     batch = watch.seconds() / calls;
   }
-  std::nth_element(batches.begin(), batches.begin() + batches.size() / 2, batches.end());
-  return batches[batches.size() / 2];
+  return median(std::move(batches));
 }
 
 }  // namespace
