@@ -64,6 +64,15 @@ void write_energies(const std::filesystem::path& path, const Simulation& run) {
   write_csv(path, table);
 }
 
+void write_errors(const std::filesystem::path& path, const std::vector<ErrorRecord>& errors) {
+  CsvTable table{{"time", "s"},  {"fit", "m"},          {"outside", "m"},
+                 {"total", "m"}, {"displacement", "m"}, {"beyond_training"}};
+  for (const ErrorRecord& error : errors)
+    table.add_row(error.time, error.fit, error.outside, error.total, error.size, error.beyond_training ? 1 : 0);
+  const ExitGuard guard;
+  write_csv(path, table);
+}
+
 void write_tracked(const std::filesystem::path& path, const Scene& scene, const Simulation& run) {
   std::vector<CsvTable::Column> columns{{"time", "s"}};
   for (const Index node : scene.track)
@@ -122,6 +131,15 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["refreshes"] = effort.refreshes;
   json["worst_residual"] = effort.worst_residual;
   json["missed_steps"] = effort.missed;
+  if (!run.errors.empty()) {
+    const IndicatedError error(run.errors);
+    json["indicated_error"] = {{"relative", error.relative},
+                               {"worst", error.worst},
+                               {"worst_time", error.worst_time},
+                               {"estimates", run.errors.size()},
+                               {"beyond_training", error.beyond_training},
+                               {"share_of_steps", run.estimate_seconds / run.integration_seconds}};
+  }
   json["frames"] = run.times.size();
   json["every"] = options.every;
   json["tracked"] = Json::array();
@@ -143,6 +161,11 @@ void print_summary(const SimulateCommand& command, const Scene& scene, const Sim
       {"iterations", shown(effort.mean_iterations, 3) + " a step, " + std::to_string(effort.most_iterations) +
                          " at most; " + shown_count(effort.refreshes) + " tangents"},
       {"residual", "at most " + shown(effort.worst_residual, 2) + ", asked for " + shown(options.steps.tolerance)}};
+  if (!run.errors.empty()) {
+    const IndicatedError error(run.errors);
+    rows.emplace_back("indicated error", shown_percent(error.relative) + ", at worst " + shown_percent(error.worst) +
+                                             " at t = " + shown(error.worst_time, 3) + " s");
+  }
   if (reconstruction > 0)
     rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(run.times.size()), 3) +
                                             " ms a frame of all nodes");
@@ -182,6 +205,7 @@ void SimulateCommand::run() const {
     save_trajectory(output / trajectory_file, trajectory);
     write_energies(output / "energies.csv", result);
     write_tracked(output / "tracked.csv", what, result);
+    if (!result.errors.empty()) write_errors(output / "errors.csv", result.errors);
     if (result.steps.back().time == 0)
       warn("there is no step to draw: there will be no energy.png");
     else if (can_plot())
@@ -207,6 +231,13 @@ void SimulateCommand::run() const {
     throw SolverError("step " + std::to_string(result.num_steps()) +
                       " (t = " + shown(static_cast<double>(result.num_steps()) * options.step) +
                       " s) is not finite; the results end before it. A shorter --step or --solver newton may help");
+  if (!result.errors.empty()) {
+    const IndicatedError error(result.errors);
+    if (error.beyond_training > 0)
+      warn("from t = " + shown(error.first_beyond, 3) + " s on " + std::to_string(error.beyond_training) + " of " +
+           std::to_string(result.errors.size()) +
+           " states are larger than anything that forces were fitted to; they may be wrong by more than is indicated");
+  }
   if (effort.missed > 0)
     warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) + " steps missed the tolerance " +
          shown(options.steps.tolerance) + " (worst residual " + shown(effort.worst_residual, 2) +

@@ -4,9 +4,11 @@
 #include <core/stopwatch.hpp>
 #include <physics/body/body_system.hpp>
 #include <physics/time/integrator_library.hpp>
+#include <reduction/system/error_estimator.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace supple {
 
@@ -84,10 +86,14 @@ class SceneLoads {
   Load load_;
 };
 
-/// \param frame  unknowns → the coordinates that frames keep.
+/// Of a state at the end of a step.
+using Estimate = std::function<ErrorRecord(double time, VectorIn u)>;
+constexpr Index estimate_every = 4;  // steps
+
+/// \param frame  unknowns → the coordinates that frames keep. \param estimate  of the error, or null.
 template <typename MatrixType, typename Frame>
 Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, const SimulationOptions& options,
-                     const Frame& frame, const Progress& progress) {
+                     const Frame& frame, const Estimate& estimate, const Progress& progress) {
   Simulation result;
   result.unknowns = system.dim();
   const Index num_frames = options.num_steps / options.every + 1;
@@ -147,6 +153,11 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
     const Vector now = loads.at(static_cast<double>(k) * options.step).at(state.u);
     record(report, result.steps.back().work + 0.5 * (external + now).dot(state.u - u_before), seconds);
     external = now;
+    if (estimate && (k % estimate_every == 0 || k == options.num_steps)) {
+      watch.restart();
+      result.errors.push_back(estimate(state.time, state.u));
+      result.estimate_seconds += watch.seconds();
+    }
     tell(progress, "time steps", static_cast<double>(k) / static_cast<double>(options.num_steps));
   }
   const Index frames = static_cast<Index>(result.times.size());
@@ -210,6 +221,23 @@ Effort::Effort(const Simulation& run) {
   if (run.integration_seconds > 0) steps_per_second = static_cast<double>(run.num_steps()) / run.integration_seconds;
 }
 
+IndicatedError::IndicatedError(const std::vector<ErrorRecord>& errors) {
+  double squares = 0, sizes = 0, largest = 0;
+  for (const ErrorRecord& error : errors) {
+    squares += error.total * error.total;
+    sizes += error.size * error.size;
+    largest = std::max(largest, error.size);
+    if (error.total > worst) {
+      worst = error.total;
+      worst_time = error.time;
+    }
+    if (error.beyond_training && beyond_training++ == 0) first_beyond = error.time;
+  }
+  if (largest == 0) return;  // nothing moved
+  relative = std::sqrt(squares / sizes);
+  worst /= largest;
+}
+
 Trajectory trajectory_of(const Simulation& run, const SimulationOptions& options, bool reduced) {
   Trajectory trajectory{.reduced = reduced,
                         .model = {},
@@ -238,8 +266,20 @@ Simulation simulate_reduced(const ReducedModel& model, const Scene& scene, const
   const Stopwatch watch;
   const AnySystem<Matrix> system = model.system(options.precision);
   const double construction = watch.seconds();
+  Estimate estimate;
+  if (const std::optional<ErrorEstimator> states = error_estimator(model))
+    estimate = [&system, estimator = MotionErrorEstimator(*states, options.steps.damping),
+                root_mass = std::sqrt(nodal_mass(model.body).sum())](double time, VectorIn q) mutable {
+      const ErrorEstimate error = estimator.advance(time, q, system.force(q));
+      return ErrorRecord{.time = time,
+                         .fit = error.fit / root_mass,
+                         .outside = error.outside / root_mass,
+                         .total = error.total() / root_mass,
+                         .size = q.norm() / root_mass,
+                         .beyond_training = error.beyond_training};
+    };
   Simulation result = integrate(
-      system, scene, options, [](VectorIn q) -> Vector { return q; }, progress);
+      system, scene, options, [](VectorIn q) -> Vector { return q; }, estimate, progress);
   result.setup_seconds += construction;
   return result;
 }
@@ -251,7 +291,7 @@ Simulation simulate_full(const Body& body, const Scene& scene, const SimulationO
   const AnySystem<SparseMatrix> system = full_system(body);
   const double construction = watch.seconds();
   Simulation result = integrate(
-      system, scene, options, [&](VectorIn u) { return system.expand(u); }, progress);
+      system, scene, options, [&](VectorIn u) { return system.expand(u); }, nullptr, progress);
   result.setup_seconds += construction;
   return result;
 }

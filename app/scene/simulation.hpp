@@ -36,6 +36,14 @@ struct StepRecord {
   Status status = Status::Converged;
 };
 
+/// What a MotionErrorEstimator says of the state after a step.
+struct ErrorRecord {
+  double time = 0;                         ///< [s]
+  double fit = 0, outside = 0, total = 0;  ///< estimated distances from the full object, rms over its mass [m]
+  double size = 0;                         ///< displacement, rms over its mass [m]
+  bool beyond_training = false;            ///< larger than anything that forces were fitted to
+};
+
 struct Simulation {
   Index unknowns = 0;
   std::vector<StepRecord> steps;  ///< the first is the start; ends early with a NotFinite one
@@ -43,8 +51,10 @@ struct Simulation {
   std::vector<double> times;      ///< of the frames [s]
   /// Frames × coordinates: reduced coordinates, or displacements [m] and velocities [m/s] of all nodes.
   RowMatrix u, v;
-  double setup_seconds = 0;        ///< system, loads, first factorisation
-  double integration_seconds = 0;  ///< the steps alone
+  std::vector<ErrorRecord> errors;  ///< of a reduced model that has an indicator, every fourth step
+  double setup_seconds = 0;         ///< system, loads, first factorisation
+  double integration_seconds = 0;   ///< the steps alone
+  double estimate_seconds = 0;      ///< the estimates of the error alone
 
   Index num_steps() const { return static_cast<Index>(steps.size()) - 1; }
   bool finite() const { return steps.back().status != Status::NotFinite; }
@@ -56,6 +66,18 @@ struct Effort {
   Index most_iterations = 0, refreshes = 0, missed = 0;
 
   explicit Effort(const Simulation& run);
+};
+
+/// Error of a motion by its estimates.
+struct IndicatedError {
+  double relative = 0;        ///< rms of the estimates over rms of the displacements
+  double worst = 0;           ///< largest estimate over the largest displacement
+  double worst_time = 0;      ///< [s]
+  Index beyond_training = 0;  ///< estimates that were for states larger than anything that forces were fitted to
+  double first_beyond = 0;    ///< time of the first of these [s]
+
+  /// \param errors  at least one.
+  explicit IndicatedError(const std::vector<ErrorRecord>& errors);
 };
 
 /// Its frames, of no model in a file yet. \param reduced  whether they are reduced coordinates.

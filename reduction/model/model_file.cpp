@@ -109,6 +109,26 @@ class ModelReader {
     return values;
   }
 
+  /// Component numbers below m, ascending, at least one.
+  std::vector<Index> components(const std::string& name, Index m) const {
+    std::vector<Index> result;
+    for (const std::int64_t i : file.integers(name)) {
+      if (i < 0 || i >= m)
+        throw fail(name + " names component " + std::to_string(i) + ", expected 0 to " + std::to_string(m - 1));
+      if (!result.empty() && i <= result.back())
+        throw fail(name + " are not ascending: " + std::to_string(i) + " follows " + std::to_string(result.back()));
+      result.push_back(i);
+    }
+    if (result.empty()) throw fail(name + " is empty, expected one component at least");
+    return result;
+  }
+  /// One for each component, > 0.
+  Vector positive_weights(const std::string& name, const std::vector<Index>& components) const {
+    Vector weights = finite_vector(name, static_cast<Index>(components.size()));
+    if (!(weights.array() > 0).all()) throw fail(name + " are not all positive");
+    return weights;
+  }
+
  private:
   std::filesystem::path path_;
 
@@ -197,6 +217,29 @@ void check_basis(const ModelReader& in, const ReducedModel& model) {
       model.subspace);
 }
 
+/// \param model  the rest of it.
+ErrorIndicator read_indicator(const ModelReader& in, const ReducedModel& model) {
+  const auto [m, rows] = with_force_model(model.body, []<typename Model>(const std::shared_ptr<const Model>& force) {
+    return std::pair<Index, Index>(force->num_components(), num_active_dofs<Model>);
+  });
+  ErrorIndicator indicator;
+  indicator.indices = in.components("indicator.indices", m);
+  for (const Index i : indicator.indices)
+    if (std::binary_search(model.indices.begin(), model.indices.end(), i))
+      throw in.fail("indicator.indices names component " + std::to_string(i) + ", which selection.indices has");
+  indicator.weights = in.positive_weights("indicator.weights", indicator.indices);
+  indicator.outside_stiffness = in.finite_vector("indicator.outside_stiffness");
+  if (!(indicator.outside_stiffness.array() > 0).all())
+    throw in.fail("indicator.outside_stiffness is not all positive");
+  indicator.rows =
+      in.finite_matrix("indicator.rows", indicator.weights.size() * rows, model.dim() + indicator.num_outside());
+  const Vector calibration = in.finite_vector("indicator.calibration", 2);
+  if (!(calibration.array() > 0).all()) throw in.fail("indicator.calibration is not all positive");
+  indicator.scale = calibration[0];
+  indicator.trained_size = calibration[1];
+  return indicator;
+}
+
 }  // namespace
 
 void save_model(const std::filesystem::path& path, const ReducedModel& model) {
@@ -224,6 +267,14 @@ void save_model(const std::filesystem::path& path, const ReducedModel& model) {
   file.add("selection.indices", widen(model.indices));
   file.add("selection.weights", model.weights);
   file.add("rest_stiffness", model.rest_stiffness);
+  if (model.indicator) {
+    const ErrorIndicator& indicator = *model.indicator;
+    file.add("indicator.indices", widen(indicator.indices));
+    file.add("indicator.weights", indicator.weights);
+    file.add("indicator.rows", indicator.rows);
+    file.add("indicator.outside_stiffness", indicator.outside_stiffness);
+    file.add("indicator.calibration", (Vector(2) << indicator.scale, indicator.trained_size).finished());
+  }
   file.write(path);
 }
 
@@ -285,24 +336,15 @@ ReducedModel load_model(const std::filesystem::path& path) {
   try {  // what constructing the model demands: law, parameters, volumes
     const Index m = with_force_model(model.body, [](const auto& force) { return force->num_components(); });
     check_basis(in, model);
-    for (const std::int64_t i : file.integers("selection.indices")) {
-      if (i < 0 || i >= m)
-        throw in.fail("selection.indices names component " + std::to_string(i) + ", expected 0 to " +
-                      std::to_string(m - 1));
-      if (!model.indices.empty() && i <= model.indices.back())
-        throw in.fail("selection.indices are not ascending: " + std::to_string(i) + " follows " +
-                      std::to_string(model.indices.back()));
-      model.indices.push_back(i);
-    }
+    model.indices = in.components("selection.indices", m);
+    model.weights = in.positive_weights("selection.weights", model.indices);
   } catch (const std::invalid_argument& error) {
     throw in.fail(error.what());
   }
-  model.weights = in.finite_vector("selection.weights", static_cast<Index>(model.indices.size()));
-  if (!(model.weights.array() > 0).all()) throw in.fail("selection.weights are not all positive");
-  if (model.indices.empty()) throw in.fail("selection.indices is empty, expected one component at least");
   model.rest_stiffness = in.finite_matrix("rest_stiffness", model.dim(), model.dim());
   const Matrix& K = model.rest_stiffness;
   if ((K - K.transpose()).norm() > 1e-8 * K.norm()) throw in.fail("rest_stiffness is not symmetric");
+  if (file.contains("indicator.indices")) model.indicator = read_indicator(in, model);
   return model;
 }
 

@@ -2,7 +2,9 @@
 /// \file Selected components that stand for all, in a subspace.
 
 #include <core/types.hpp>
+#include <reduction/system/error_indicator.hpp>
 
+#include <optional>
 #include <vector>
 
 namespace supple {
@@ -12,9 +14,10 @@ namespace supple {
 template <typename Basis>
 struct ReducedForces {
   Basis subspace;
-  Matrix rest_stiffness;       ///< UᵀK(0)U, exact, d × d
-  std::vector<Index> indices;  ///< selected components of the force model, ascending
-  Vector weights;              ///< of these, > 0
+  Matrix rest_stiffness;                         ///< UᵀK(0)U, exact, d × d
+  std::vector<Index> indices;                    ///< selected components of the force model, ascending
+  Vector weights;                                ///< of these, > 0
+  std::optional<ErrorIndicator> indicator = {};  ///< of its error at run time
 };
 
 }  // namespace supple

@@ -36,6 +36,11 @@ struct ReducedModel : ReducedForces<AnyBasis> {
 /// Vibration modes of a model, of its exact stiffness at rest.
 ReducedModes reduced_modes(const ReducedModel& model);
 
+class ErrorEstimator;
+/// What estimates the error of its states, by its indicator; none if it has none. Include
+/// reduction/system/error_estimator.hpp to use it.
+std::optional<ErrorEstimator> error_estimator(const ReducedModel& model);
+
 /// Writes one file in the safetensors layout (see core/tensor_file.hpp), in one step; docs/model-file.md
 /// lists its arrays.
 void save_model(const std::filesystem::path& path, const ReducedModel& model);

@@ -1,9 +1,11 @@
 #pragma once
 /// \file Main job for force models, subspaces and selectors of one's own types.
 
+#include <core/median.hpp>
 #include <core/peak_memory.hpp>
 #include <reduction/model/reduced_forces.hpp>
 #include <reduction/pipeline/training.hpp>
+#include <reduction/training/indicator_fitting.hpp>
 #include <sparse/selection/explain_subset_selector.hpp>
 #include <sparse/selection/smallest_selection.hpp>
 #include <sparse/selectors/nn_sp.hpp>
@@ -79,8 +81,8 @@ SelectionChecks check(const Training<Model, S>& training, const WorkingComponent
 
 /// The stage that compares a model with the full object, under loads it has not seen.
 template <ForceModel Model, Subspace S>
-FullError full_error(const Training<Model, S>& training, const WorkingComponents& working,
-                     const ReduceOptions& options) {
+EquilibriumPairs compare_with_full(const Training<Model, S>& training, const WorkingComponents& working,
+                                   const ReduceOptions& options) {
   if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
     const ReducedObject<Model, S>& object = training.object;
     std::vector<double> amplitudes{0.08, 0.04};
@@ -88,7 +90,7 @@ FullError full_error(const Training<Model, S>& training, const WorkingComponents
       for (double& amplitude : amplitudes) amplitude /= 3;
     constexpr Index num_modes = 10;
     const auto relaxation = training.relaxation ? training.relaxation : relaxation_of(object);
-    return distance_from(
+    return compare_equilibria(
         [&](const Matrix& linear, const Matrix& reduced) {
           return relaxation->equilibria(object.rest_stiffness * linear, reduced);
         },
@@ -102,8 +104,8 @@ FullError full_error(const Training<Model, S>& training, const WorkingComponents
 /// The stage that measures what a fit to all components in the subspace is worth: equilibria of a model under fresh loads
 /// such as those of the training equilibria, against those of all components, which are searched from them.
 template <ForceModel Model, Subspace S>
-FullError equilibrium_error(const Training<Model, S>& training, const WorkingComponents& working,
-                            const ReduceOptions& options) {
+EquilibriumPairs compare_with_subspace(const Training<Model, S>& training, const WorkingComponents& working,
+                                       const ReduceOptions& options) {
   if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
     const ReducedObject<Model, S>& object = training.object;
     const ReducedModes& modes = object.modes;
@@ -112,7 +114,7 @@ FullError equilibrium_error(const Training<Model, S>& training, const WorkingCom
     Matrix springs;
     if (modes.num_zero > 0) springs = modes.softest_stiffness() * rigid * rigid.transpose();
     constexpr Index count = 24;
-    return distance_from(
+    return compare_equilibria(
         [&](const Matrix& linear, const Matrix& reduced) {
           ExactEquilibria exact = exact_equilibria(
               [&](MatrixIn Q) { return reduced_forces(object.system->shared_model(), *object.subspace, Q); },
@@ -130,6 +132,36 @@ FullError equilibrium_error(const Training<Model, S>& training, const WorkingCom
   }
 }
 
+/// The stage that trains what estimates the error at run time, by what was measured under fresh loads; none without these,
+/// where forces have not relaxed, or where too few components are left.
+template <ForceModel Model, Subspace S>
+std::optional<ErrorIndicator> indicator_of(const Training<Model, S>& training, const WorkingComponents& working,
+                                           const EquilibriumPairs& full, const ReduceOptions& options) {
+  if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
+    if (!training.relaxation || full.reduced.cols() == 0) return std::nullopt;
+    const ReducedObject<Model, S>& object = training.object;
+    const auto size = static_cast<Index>(working.indices.size()) / 2 + 1;
+    auto indicator = fit_indicator(*object.system, *object.subspace, *training.equilibria, training.fitting,
+                                   training.relaxed, working.indices, size, RunSeeds(options).indicator);
+    if (!indicator) return indicator;
+    const ErrorEstimator estimate(object.system->shared_model(), *indicator, object.modes);
+    const auto system = object.reduced_system(working.indices, working.weights);
+    const Vector measured = full.total();
+    std::vector<double> ratios;
+    for (Index t = 0; t < measured.size(); ++t) {
+      const auto q = full.reduced.col(t);
+      const double estimated = estimate(q, system.force(q)).total() / q.norm();
+      if (estimated > 0) ratios.push_back(measured[t] / estimated);
+      indicator->trained_size = std::max(indicator->trained_size, q.norm());
+    }
+    if (ratios.empty()) return std::nullopt;
+    indicator->scale = median(std::move(ratios));
+    return indicator;
+  } else {
+    return std::nullopt;
+  }
+}
+
 /// All stages from the selection to checks.
 template <ForceModel Model, Subspace S, typename Selector>
 Reduction<Model, S> reduce(const Training<Model, S>& training, const Selector& select, const ReduceOptions& options,
@@ -144,12 +176,19 @@ Reduction<Model, S> reduce(const Training<Model, S>& training, const Selector& s
   const SelectionChecks checks = stage("checks", [&](auto) { return check(training, working); });
 
   ReduceReport report = report_of(training);
-  if (options.full_loads > 0)
-    stage("full object", [&](auto) { report.full_error = full_error(training, working, options); });
+  EquilibriumPairs pairs;
+  if (options.full_loads > 0) {
+    pairs = stage("full object", [&](auto) { return compare_with_full(training, working, options); });
+    report.full_error = full_error_of(pairs);
+  }
   const FullError& full = report.full_error;
   FullError fresh = full;  // where forces relaxed, the full object is what they were fitted to
   if (!training.relaxation)
-    fresh = stage("fresh equilibria", [&](auto) { return equilibrium_error(training, working, options); });
+    fresh = stage("fresh equilibria",
+                  [&](auto) { return full_error_of(compare_with_subspace(training, working, options)); });
+  std::optional<ErrorIndicator> indicator;
+  if (training.relaxation && options.full_loads > 0)
+    indicator = stage("indicator", [&](auto) { return indicator_of(training, working, pairs, options); });
   report.equilibrium_error = fresh.inside;
   report.equilibrium_loads = fresh.loads;
   report.equilibrium_unfinished = fresh.unfinished;
@@ -174,7 +213,8 @@ Reduction<Model, S> reduce(const Training<Model, S>& training, const Selector& s
   report.total_seconds = stage.total_seconds();
   report.peak_memory = peak_resident_memory();
   const ReducedObject<Model, S>& object = training.object;
-  return {{object.subspace, object.rest_stiffness, std::move(working.indices), std::move(working.weights)},
+  return {{object.subspace, object.rest_stiffness, std::move(working.indices), std::move(working.weights),
+           std::move(indicator)},
           object.system,
           std::move(report)};
 }

@@ -17,7 +17,7 @@ TrainedObject::TrainedObject(const Body& body, const ReduceOptions& options, con
       ReducedModel model;
       static_cast<ReducedForces<AnyBasis>&>(model) = {std::move(reduction.subspace),
                                                       std::move(reduction.rest_stiffness), std::move(reduction.indices),
-                                                      std::move(reduction.weights)};
+                                                      std::move(reduction.weights), std::move(reduction.indicator)};
       return model;
     };
   });

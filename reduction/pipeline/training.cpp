@@ -28,37 +28,49 @@ WorkingComponents with_positive_weights(std::span<const Index> indices, VectorIn
   return result;
 }
 
-FullError distance_from(const std::function<FullStates(const Matrix& linear, const Matrix& reduced)>& reference,
-                        const AnySystem<Matrix>& system, const ReducedModes& modes, Matrix linear) {
-  FullError result;
-  double outside = 0, inside = 0, worst = 0;
+EquilibriumPairs compare_equilibria(
+    const std::function<FullStates(const Matrix& linear, const Matrix& reduced)>& reference,
+    const AnySystem<Matrix>& system, const ReducedModes& modes, Matrix linear) {
+  EquilibriumPairs pairs{Matrix(linear.rows(), linear.cols()), Vector(linear.cols()), Vector(linear.cols())};
+  Index count = 0;
   for (int halvings = 0; halvings <= 2 && linear.cols() > 0; ++halvings) {
     const Matrix reduced = equilibrium_poses(system, modes, linear);
     const FullStates states = reference(linear, reduced);
     std::vector<Index> left;
     for (Index t = 0; t < linear.cols(); ++t) {
-      const double out = std::pow(states.outside[t], 2);
-      const double in = (states.Q.col(t) - reduced.col(t)).squaredNorm() / std::pow(states.sizes[t], 2);
-      if (!(states.residuals[t] < std::max(1e-6, 0.1 * std::sqrt(out + in)))) {
+      const double outside = states.outside[t];
+      const double inside = (states.Q.col(t) - reduced.col(t)).norm() / states.sizes[t];
+      if (!(states.residuals[t] < std::max(1e-6, 0.1 * std::hypot(inside, outside)))) {
         left.push_back(t);
         continue;
       }
-      outside += out;
-      inside += in;
-      worst = std::max(worst, out + in);
-      ++result.loads;
-      if (halvings > 0) ++result.halved;
+      pairs.reduced.col(count) = reduced.col(t);
+      pairs.inside[count] = inside;
+      pairs.outside[count] = outside;
+      ++count;
+      if (halvings > 0) ++pairs.halved;
     }
     linear = Matrix(0.5 * linear(Eigen::all, left));
   }
-  result.unfinished = linear.cols();
-  if (result.loads == 0) return result;
-  const auto count = static_cast<double>(result.loads);
-  result.outside = std::sqrt(outside / count);
-  result.inside = std::sqrt(inside / count);
-  result.total = std::sqrt((outside + inside) / count);
-  result.worst = std::sqrt(worst);
-  return result;
+  pairs.reduced.conservativeResize(Eigen::NoChange, count);
+  pairs.inside.conservativeResize(count);
+  pairs.outside.conservativeResize(count);
+  pairs.unfinished = linear.cols();
+  return pairs;
+}
+
+FullError full_error_of(const EquilibriumPairs& pairs) {
+  FullError error;
+  error.loads = pairs.inside.size();
+  error.halved = pairs.halved;
+  error.unfinished = pairs.unfinished;
+  if (error.loads == 0) return error;
+  const double root = std::sqrt(static_cast<double>(error.loads));
+  error.outside = pairs.outside.norm() / root;
+  error.inside = pairs.inside.norm() / root;
+  error.total = pairs.total().norm() / root;
+  error.worst = pairs.total().maxCoeff();
+  return error;
 }
 
 Vector softest_eigenvalues(const Matrix& stiffness, Index first, Index count) {

@@ -38,7 +38,7 @@ WorkingComponents with_positive_weights(std::span<const Index> indices, VectorIn
 
 /// The seeds of what is drawn at random in a run, apart from one another. The seed of the run moves all of them.
 struct RunSeeds {
-  std::uint64_t poses, held_out, equilibria, full_loads, fresh_equilibria, selection;
+  std::uint64_t poses, held_out, equilibria, full_loads, fresh_equilibria, indicator, selection;
 
   explicit RunSeeds(const ReduceOptions& options)
       : poses(options.poses.seed + 1000003 * options.seed),
@@ -46,6 +46,7 @@ struct RunSeeds {
         equilibria(poses + 15485863),
         full_loads(poses + 32452843),
         fresh_equilibria(poses + 49979687),
+        indicator(poses + 67867967),
         selection(options.seed) {}
 };
 
@@ -87,6 +88,7 @@ struct Training {
   std::vector<std::pair<double, Fitting>> held_out;  ///< on fresh poses at these shares of the largest amplitude
   std::optional<Equilibria> equilibria = {};
   std::shared_ptr<const Relaxation> relaxation = {};  ///< if forces relaxed
+  FullStates relaxed = {};                            ///< then of the equilibria
 
   /// The equilibria by its own tangents; there must be some.
   Equilibria equilibria_of(const WorkingComponents& working) const {
@@ -148,11 +150,22 @@ TrainingPoses training_poses(const ReducedObject<Model, S>& object, const PoseOp
                         object.traits.inverted);
 }
 
-/// How far equilibria of a system are from those of a reference under the same loads; loads under which that finds none are
-/// halved, twice at most. \param linear  linear responses to the loads, d × T. \param reference  from linear responses
+/// Equilibria of a system beside those of a reference under the same loads, a column or an entry for each.
+struct EquilibriumPairs {
+  Matrix reduced;          ///< d × loads, those of the system
+  Vector inside, outside;  ///< distances in the subspace and out of it, as shares of the size
+  Index halved = 0;        ///< loads that were halved, for no equilibrium of the reference was found before
+  Index unfinished = 0;    ///< left out, for none was found after that either
+
+  Vector total() const { return (inside.cwiseAbs2() + outside.cwiseAbs2()).cwiseSqrt(); }
+};
+/// Loads under which the reference finds no equilibrium are halved, twice at most. \param linear  linear responses to the loads, d × T. \param reference  from linear responses
 /// and equilibria of the system to its own.
-FullError distance_from(const std::function<FullStates(const Matrix& linear, const Matrix& reduced)>& reference,
-                        const AnySystem<Matrix>& system, const ReducedModes& modes, Matrix linear);
+EquilibriumPairs compare_equilibria(
+    const std::function<FullStates(const Matrix& linear, const Matrix& reduced)>& reference,
+    const AnySystem<Matrix>& system, const ReducedModes& modes, Matrix linear);
+/// Root mean squares over the loads.
+FullError full_error_of(const EquilibriumPairs& pairs);
 
 /// Null for forces without a potential.
 template <ForceModel F, Subspace S>
@@ -206,11 +219,12 @@ Matrix equilibrium_loads(const ReducedObject<Model, S>& object, Index count, std
 }
 
 /// Poses in equilibrium of a rough selection. \throws std::invalid_argument for forces without a potential.
-/// \param relaxation  of the object, or null: nothing relaxes.
+/// \param relaxation  of the object, or null: nothing relaxes. \param relaxed  where the relaxed states go.
 template <ForceModel Model, Subspace S>
 EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& object,
                                             const ForceFitting<Model, S>& fitting, const RunSeeds& seeds,
-                                            const ReduceOptions& options, const Relaxation* relaxation) {
+                                            const ReduceOptions& options, const Relaxation* relaxation,
+                                            FullStates& relaxed) {
   if constexpr (PotentialModel<Model> && has_symmetric_tangent<Model>()) {
     const auto& model = object.system->shared_model();
     const ObjectTraits& traits = object.traits;
@@ -221,12 +235,12 @@ EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& objec
     const Matrix linear = equilibrium_loads(object, traits.equilibria, seeds.equilibria, options);
     const Matrix at_rest =
         treat_inverted(model, *object.subspace, equilibrium_poses(rough, object.modes, linear), traits.inverted).Q;
-    const Matrix targets = relaxation ? relaxation->relaxed(at_rest).forces : Matrix();
+    if (relaxation) relaxed = relaxation->relaxed(at_rest);
     const double share = static_cast<double>(fitting.num_poses()) / static_cast<double>(traits.equilibria);
     return {model,
             object.subspace,
             at_rest,
-            targets,
+            relaxed.forces,
             [&](VectorIn q) { return rough.stiffness(q); },
             object.modes.softest_stiffness(),
             (relaxation ? 40 : 20) + object.modes.num_zero,
@@ -273,8 +287,8 @@ Training<Model, S> train(std::shared_ptr<const FullSystem<Model>> system, std::s
   if (training.object.traits.equilibria > 0)
     stage("equilibria", [&](auto) {
       if (options.relaxed) training.relaxation = relaxation_of(training.object);
-      training.equilibria =
-          fit_equilibria(training.object, training.fitting, seeds, options, training.relaxation.get());
+      training.equilibria = fit_equilibria(training.object, training.fitting, seeds, options, training.relaxation.get(),
+                                           training.relaxed);
     });
   return training;
 }

@@ -82,6 +82,7 @@ class EquilibriumFitting {
   Index cols() const { return forces_.cols(); }
   const Vector& rhs() const { return b_; }
   const Matrix& poses() const { return forces_.poses(); }
+  double scale() const { return scale_; }  ///< of all rows
 
   void column(Index j, VectorOut out) const { out = columns(std::span<const Index>(&j, 1)).values().col(0); }
 

@@ -61,7 +61,8 @@ FullStates Relaxation::equilibria(const Matrix& loads, const Matrix& start, doub
 
 FullStates Relaxation::run(const Matrix& start, const Matrix& loads, double tolerance, Index max_iterations) const {
   const Index d = start.rows(), T = start.cols();
-  FullStates states{Matrix(d, T), Matrix(d, T), Vector(T), Vector(T), Vector(T), Vector(T)};
+  FullStates states{Matrix(d, T), Matrix(d, T), Vector(T), Vector(T), Vector(T), Matrix(object_.mass.size(), T),
+                    Vector(T)};
   constexpr Index at_once = 8;  // columns for which the solver reads its factor once
   for (Index begin = 0; begin < T; begin += at_once) {
     const Index count = std::min(at_once, T - begin);
@@ -72,7 +73,8 @@ FullStates Relaxation::run(const Matrix& start, const Matrix& loads, double tole
     for (Index k = 0; k < count; ++k) U.col(k) = ends[k].u;
     object_.forces(U, f, states.energies.segment(begin, count));
     const Matrix Q = object_.project(object_.mass.asDiagonal() * U);
-    const Matrix outside = U - object_.lift(Q);
+    auto outside = states.remainders.middleCols(begin, count);
+    outside = U - object_.lift(Q);
     states.Q.middleCols(begin, count) = Q;
     states.forces.middleCols(begin, count) = object_.project(f);
     for (Index k = 0; k < count; ++k) {

@@ -16,12 +16,13 @@ namespace supple {
 
 /// States u_t of a full object as a subspace sees them, a column each.
 struct FullStates {
-  Matrix Q;          ///< d × T, Uᵀ M u: the nearest states of the subspace
-  Matrix forces;     ///< d × T, Uᵀ f(u): what the full object answers there
-  Vector energies;   ///< T, E(u) [J]
-  Vector sizes;      ///< T, ‖u‖_M [kg^½ m]
-  Vector outside;    ///< T, ‖u − U q‖_M / ‖u‖_M: what no state of the subspace has
-  Vector residuals;  ///< T, ‖Δu‖_M / ‖u‖_M of the last step: about how far from its end the search is
+  Matrix Q;           ///< d × T, Uᵀ M u: the nearest states of the subspace
+  Matrix forces;      ///< d × T, Uᵀ f(u): what the full object answers there
+  Vector energies;    ///< T, E(u) [J]
+  Vector sizes;       ///< T, ‖u‖_M [kg^½ m]
+  Vector outside;     ///< T, ‖u − U q‖_M / ‖u‖_M: what no state of the subspace has
+  Matrix remainders;  ///< dim × T, u − U q over the free unknowns [m]
+  Vector residuals;   ///< T, ‖Δu‖_M / ‖u‖_M of the last step: about how far from its end the search is
 };
 
 /// A full object whose displacements outside of a subspace relax: minimises E(u) from many reduced states at once,

@@ -69,6 +69,45 @@ TEST_F(SimulateCommandTest, WritesWhatItReports) {
   EXPECT_GT(read_png(folder / "run/energy.png").width, 300);
 }
 
+TEST_F(SimulateCommandTest, EstimatesItsError) {
+  ASSERT_EQ(supple({"reduce", "bar:8x2x2", "-o", "bar.supple", "--fix", "x<=0", "--modes", "8"}).exit_code, 0);
+  const Outcome quiet = supple({"simulate", "bar.supple", "--json", "-", "-o", "run", "--frames", "none"});
+  ASSERT_EQ(quiet.exit_code, 0) << quiet.err;
+  const json report = json::parse(quiet.out), error = report["indicated_error"];
+  const Index estimates = error["estimates"];
+  EXPECT_EQ(estimates, report["steps"].get<Index>() / 4);
+  const CsvTable errors = table("run/errors.csv");
+  ASSERT_EQ(errors.num_rows(), estimates);
+  double squares = 0, sizes = 0, worst = 0, worst_time = 0, largest = 0;
+  for (Index k = 0; k < estimates; ++k) {
+    const double total = errors.numbers("total")[k], size = errors.numbers("displacement")[k];
+    EXPECT_NEAR(total, std::hypot(errors.numbers("fit")[k], errors.numbers("outside")[k]), 1e-12 * total);
+    squares += total * total;
+    sizes += size * size;
+    largest = std::max(largest, size);
+    if (total > worst) worst = total, worst_time = errors.numbers("time")[k];
+  }
+  EXPECT_NEAR(error["relative"].get<double>(), std::sqrt(squares / sizes), 1e-9);
+  EXPECT_NEAR(error["worst"].get<double>(), worst / largest, 1e-9);
+  EXPECT_EQ(error["worst_time"].get<double>(), worst_time);
+  EXPECT_GT(error["relative"].get<double>(), 1e-5);
+  EXPECT_LT(error["relative"].get<double>(), 0.2);
+  EXPECT_EQ(error["beyond_training"], 0);
+  EXPECT_THAT(quiet.err, Not(HasSubstr("forces were fitted to")));
+
+  // far beyond what was trained
+  write("scene.json", R"({"duration": 0.3, "pulls": [{"acceleration": [0, 0, -9]}]})");
+  const Outcome far = supple({"simulate", "bar.supple", "--scene", "scene.json", "--json", "-"});
+  ASSERT_EQ(far.exit_code, 0) << far.err;
+  EXPECT_GT(json::parse(far.out)["indicated_error"]["beyond_training"].get<Index>(), 0);
+  EXPECT_THAT(far.err, HasSubstr("larger than anything that forces were fitted to"));
+
+  reduce_bar();  // another recipe, which cannot tell
+  const json silent = this->report({"simulate", "bar.supple", "-o", "silent", "--frames", "none"});
+  EXPECT_FALSE(silent.contains("indicated_error"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "silent/errors.csv"));
+}
+
 TEST_F(SimulateCommandTest, TakesTheIntegratorOfTheSceneOrTheLine) {
   reduce_bar();
   const json plain = report({"simulate", "bar.supple", "--time", "0.3", "-o", "plain"});

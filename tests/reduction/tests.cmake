@@ -7,6 +7,7 @@ supple_test(stiffness_range LABEL unit LINKS supple::reduction SOURCES reduction
 supple_test(force_fitting LABEL unit LINKS supple::reduction SOURCES reduction/training/force_fitting_test.cpp)
 supple_test(equilibrium_fitting LABEL unit LINKS supple::reduction
   SOURCES reduction/training/equilibrium_fitting_test.cpp)
+supple_test(error_indicator LABEL unit LINKS supple::reduction SOURCES reduction/training/error_indicator_test.cpp)
 supple_test(exact_equilibria LABEL unit LINKS supple::reduction SOURCES reduction/training/exact_equilibria_test.cpp)
 supple_test(relaxation LABEL unit LINKS supple::reduction SOURCES reduction/training/relaxation_test.cpp)
 supple_test(reduce LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/reduce_test.cpp)

@@ -7,6 +7,7 @@
 #include <reduction/model/with_reduced_system.hpp>
 #include <reduction/pipeline/reduce.hpp>
 #include <reduction/pipeline/reduction.hpp>
+#include <reduction/system/error_estimator.hpp>
 #include <reduction/system/galerkin_system.hpp>
 #include <sparse/selectors/selector_library.hpp>
 #include <testing/near.hpp>
@@ -327,6 +328,37 @@ TEST_F(ModelFile, GivesBackTheSameBits) {
   }
 }
 
+TEST_F(ModelFile, KeepsTheIndicatorAndRefusesAWrongOne) {
+  ReduceOptions options = ReduceOptions::relaxed_derivatives(6);
+  options.points = 30;
+  const ReducedModel model = reduce(bar_solid(), options);
+  ASSERT_TRUE(model.indicator);
+  save_model(path, model);
+  const ReducedModel loaded = load_model(path);
+  ASSERT_TRUE(loaded.indicator);
+  EXPECT_EQ(loaded.indicator->indices, model.indicator->indices);
+  EXPECT_TRUE(is_same(loaded.indicator->weights, model.indicator->weights));
+  EXPECT_TRUE(is_same(loaded.indicator->rows, model.indicator->rows));
+  EXPECT_TRUE(is_same(loaded.indicator->outside_stiffness, model.indicator->outside_stiffness));
+  EXPECT_EQ(loaded.indicator->scale, model.indicator->scale);
+  EXPECT_EQ(loaded.indicator->trained_size, model.indicator->trained_size);
+
+  const auto changed = [&](auto&& change) {
+    ReducedModel other = model;
+    change(*other.indicator);
+    save_model(path, other);
+    return message(path);
+  };
+  EXPECT_THAT(changed([&](auto& i) { i.indices.front() = model.indices.front(); }), testing::HasSubstr("indicator"));
+  EXPECT_THAT(changed([](auto& i) { i.indices.back() = 144; }), testing::HasSubstr("names component 144"));
+  EXPECT_THAT(changed([](auto& i) { i.weights[0] = 0; }), testing::HasSubstr("indicator.weights are not all positive"));
+  EXPECT_THAT(changed([](auto& i) { i.rows.conservativeResize(i.rows.rows() - 9, Eigen::NoChange); }),
+              testing::HasSubstr("indicator.rows"));
+  EXPECT_THAT(changed([](auto& i) { i.rows(0, 0) = std::nan(""); }), testing::HasSubstr("not finite"));
+  EXPECT_THAT(changed([](auto& i) { i.outside_stiffness[0] = -1; }), testing::HasSubstr("outside_stiffness"));
+  EXPECT_THAT(changed([](auto& i) { i.scale = 0; }), testing::HasSubstr("indicator.calibration"));
+}
+
 TEST_F(ModelFile, IsRefusedIfAnythingIsWrongWithIt) {
   ReduceOptions options = quick(10);
   options.modes = 1;
@@ -615,6 +647,33 @@ TEST(Reduce, ForcesThatRelaxBringItNearerToTheFullObject) {
     EXPECT_LT(relaxed.full_error.total, 0.6 * locked.full_error.total);
     EXPECT_NEAR(relaxed.full_error.outside, locked.full_error.outside, 0.2 * locked.full_error.outside);
   }
+}
+
+TEST(Reduce, KnowsItsErrorUnderLoads) {
+  ReduceOptions options = ReduceOptions::relaxed_derivatives(8);
+  options.points = 40;
+  ReduceReport report;
+  const ReducedModel model = reduce(bar_solid(), options, &report);
+  ASSERT_TRUE(model.indicator);
+  const ErrorIndicator& indicator = *model.indicator;
+  for (const Index i : indicator.indices)
+    EXPECT_FALSE(std::binary_search(model.indices.begin(), model.indices.end(), i))
+        << "component " << i << " is in both";
+  EXPECT_TRUE((indicator.weights.array() > 0).all());
+  const std::optional<ErrorEstimator> estimate = error_estimator(model);
+  ASSERT_TRUE(estimate);
+  const AnySystem<Matrix> system = model.system();
+  const auto error_along = [&](double size) {
+    const Vector q = size * indicator.trained_size * reduced_modes(model).Phi.col(0);
+    return (*estimate)(q, system.force(q));
+  };
+  EXPECT_LT(error_along(0.1).outside, 0.05 * error_along(1).outside) << "what a subspace lacks grows with the square";
+  EXPECT_FALSE(error_along(0.99).beyond_training);
+  EXPECT_TRUE(error_along(1.01).beyond_training);
+
+  options.full_loads = 0;  // nothing to calibrate it by
+  EXPECT_FALSE(reduce(bar_solid(), options).indicator);
+  EXPECT_FALSE(error_estimator(reduce(bar_solid(), quick())));
 }
 
 TEST(Reduce, TakesAsFewComponentsAsATargetErrorNeeds) {
