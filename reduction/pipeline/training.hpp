@@ -13,6 +13,7 @@
 #include <reduction/training/exact_equilibria.hpp>
 #include <reduction/training/force_fitting.hpp>
 #include <reduction/training/relaxation.hpp>
+#include <reduction/training/rest_energies.hpp>
 #include <reduction/training/training_poses.hpp>
 #include <sparse/nnls/working_set.hpp>
 #include <sparse/problem/any_problem.hpp>
@@ -108,8 +109,16 @@ struct Training {
     });
   }
   /// Weights fitted once more, with the tangents of the object that the components make in place of those of a rough
-  /// selection; as they are where that does not bring its equilibria nearer, or there are none.
+  /// selection where that brings its equilibria nearer, and with its frequencies at rest where forces relaxed in a subspace
+  /// without the structure W ⊗ I; as they are without equilibria.
   WorkingComponents refitted(const WorkingComponents& working) const;
+
+ private:
+  /// Weights of the columns whose Gram matrix and Aᵀb these are, fitted to the frequencies at rest, too, for a motion that is
+  /// late is wrong however near its equilibria are: with rows ψₖᵀ K̃(0) ψₖ / ωₖ² = 1 for the modes that the subspace was
+  /// made from, each of which weighs as much as all poses at rest. ψₖ are eigenvectors of K̃(0) itself, whose errors couple
+  /// soft modes to stiff ones.
+  Vector with_frequencies(std::span<const Index> indices, const Matrix& gram, const Vector& atb, Vector w) const;
 };
 
 Vector softest_eigenvalues(const Matrix& stiffness, Index first, Index count);
@@ -123,15 +132,46 @@ template <ForceModel Model, Subspace S>
 WorkingComponents Training<Model, S>::refitted(const WorkingComponents& working) const {
   if (!equilibria) return working;
   const auto own = equilibria_of(working);
-  const StackedProblem stacked(fitting, own);
-  const AnyProblem problem(stacked);  // what fits is compiled once, not for each type of problem
-  WorkingSet chosen(problem);
-  chosen.append(problem.columns(working.indices));
-  const WorkingComponents refit = with_positive_weights(working.indices, chosen.fit());
-  if (refit.indices.empty()) return working;
-  const bool nearer =
-      equilibria_of(refit).error(refit.indices, refit.weights) < own.error(working.indices, working.weights);
-  return nearer ? refit : working;
+  const auto refit_by = [&](const Equilibria& rows, const auto& fit) {
+    const StackedProblem stacked(fitting, rows);
+    const AnyProblem problem(stacked);  // what fits is compiled once, not for each type of problem
+    WorkingSet chosen(problem);
+    chosen.append(problem.columns(working.indices));
+    return with_positive_weights(working.indices, fit(chosen));
+  };
+  const WorkingComponents refit = refit_by(own, [](const auto& chosen) { return chosen.fit(); });
+  const bool nearer = !refit.indices.empty() && equilibria_of(refit).error(refit.indices, refit.weights) <
+                                                    own.error(working.indices, working.weights);
+  const bool locks =
+      S::block > 1;  // fields under all linear maps lock in bending still; soft frequencies make up for that
+  if (!relaxation || locks) return nearer ? refit : working;
+  const WorkingComponents tuned = refit_by(nearer ? own : *equilibria, [&](const auto& chosen) {
+    return with_frequencies(working.indices, chosen.gram(), chosen.atb(), chosen.fit());
+  });
+  return tuned.indices.empty() ? working : tuned;
+}
+
+template <ForceModel Model, Subspace S>
+Vector Training<Model, S>::with_frequencies(std::span<const Index> indices, const Matrix& gram, const Vector& atb,
+                                            Vector w) const {
+  constexpr int rounds = 4;  // eigenvectors settle
+  const ReducedModes& modes = object.modes;
+  const SubspaceReport& made = object.subspace->report;
+  const Index first = modes.num_zero, count = std::min(made.omega.size() - made.rigid_modes, modes.Phi.cols() - first);
+  if (count <= 0) return w;
+  const Vector exact = modes.omega.segment(first, count).cwiseAbs2();
+  const double weight = std::sqrt(static_cast<double>(fitting.num_poses()));
+  for (int round = 0; round < rounds; ++round) {
+    const WorkingComponents working = with_positive_weights(indices, w);
+    if (working.indices.empty()) return w;
+    const Eigen::SelfAdjointEigenSolver<Matrix> fitted(object.stiffness_at_rest(working));
+    const Matrix A = weight * exact.cwiseInverse().asDiagonal() *
+                     rest_energies(*object.system, *object.subspace, indices,
+                                   Matrix(fitted.eigenvectors().middleCols(first, count)));
+    const Vector b = Vector::Constant(count, weight);
+    w = Fnnls{}(gram + A.transpose() * A, atb + A.transpose() * b, all_positions(w.size())).w;
+  }
+  return w;
 }
 
 /// Random poses of an object by these options. \throws as sample_poses.
