@@ -236,7 +236,7 @@ void SimulateCommand::run() const {
     if (error.beyond_training > 0)
       warn("from t = " + shown(error.first_beyond, 3) + " s on " + std::to_string(error.beyond_training) + " of " +
            std::to_string(result.errors.size()) +
-           " states are larger than anything that forces were fitted to; they may be wrong by more than is indicated");
+           " states are larger than what forces were fitted to; they may be wrong by more than is indicated");
   }
   if (effort.missed > 0)
     warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) + " steps missed the tolerance " +

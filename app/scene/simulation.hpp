@@ -41,7 +41,7 @@ struct ErrorRecord {
   double time = 0;                         ///< [s]
   double fit = 0, outside = 0, total = 0;  ///< estimated distances from the full object, rms over its mass [m]
   double size = 0;                         ///< displacement, rms over its mass [m]
-  bool beyond_training = false;            ///< larger than anything that forces were fitted to
+  bool beyond_training = false;            ///< larger than what forces were fitted to
 };
 
 struct Simulation {
@@ -73,7 +73,7 @@ struct IndicatedError {
   double relative = 0;        ///< rms of the estimates over rms of the displacements
   double worst = 0;           ///< largest estimate over the largest displacement
   double worst_time = 0;      ///< [s]
-  Index beyond_training = 0;  ///< estimates that were for states larger than anything that forces were fitted to
+  Index beyond_training = 0;  ///< estimates that were for states larger than what forces were fitted to
   double first_beyond = 0;    ///< time of the first of these [s]
 
   /// \param errors  at least one.

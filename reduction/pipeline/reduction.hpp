@@ -152,7 +152,6 @@ std::optional<ErrorIndicator> indicator_of(const Training<Model, S>& training, c
       const auto q = full.reduced.col(t);
       const double estimated = estimate(q, system.force(q)).total() / q.norm();
       if (estimated > 0) ratios.push_back(measured[t] / estimated);
-      indicator->trained_size = std::max(indicator->trained_size, q.norm());
     }
     if (ratios.empty()) return std::nullopt;
     indicator->scale = median(std::move(ratios));

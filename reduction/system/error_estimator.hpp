@@ -18,7 +18,7 @@ struct ErrorEstimate {
   Vector lacking;                ///< force that the model lacks by the second selection, along modes [kg^½ m/s²]
   double fit = 0;                ///< displacement that this causes
   double outside = 0;            ///< by what the subspace cannot hold
-  bool beyond_training = false;  ///< larger than anything that forces were fitted to: the estimate may be worth little
+  bool beyond_training = false;  ///< larger than what forces were fitted to: the estimate may be worth little
 
   double total() const { return std::hypot(fit, outside); }
 };

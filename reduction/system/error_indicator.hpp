@@ -16,7 +16,7 @@ struct ErrorIndicator {
   RowMatrix rows;              ///< (s₂ · a) × (d + k): rows of [U V] behind these components, a of each [kg^-½]
   Vector outside_stiffness;    ///< k, the diagonal of VᵀK(0)V, which has nothing else [1/s²]
   double scale = 1;            ///< median of what was measured under fresh loads over what was estimated
-  double trained_size = 0;     ///< largest ‖q‖ without its rigid part that was fitted to [kg^½ m]
+  double trained_size = 0;     ///< ‖q‖ that nine in ten poses do not exceed that forces were fitted to [kg^½ m]
 
   Index num_outside() const { return outside_stiffness.size(); }  ///< k
 };

@@ -23,4 +23,11 @@ OutsideModes outside_modes(const Matrix& remainders, const Vector& sizes, const 
   return modes;
 }
 
+double ninth_decile(Vector sizes) {
+  require(sizes.size() > 0, "there are no sizes");
+  const Index at = 9 * (sizes.size() - 1) / 10;
+  std::nth_element(sizes.begin(), sizes.begin() + at, sizes.end());
+  return sizes[at];
+}
+
 }  // namespace supple

@@ -43,6 +43,14 @@ TEST(OutsideModes, SpanWhatRemains) {
   EXPECT_EQ(outside_modes(Matrix::Zero(bar.dim(), 3), Vector::Ones(3), K, mass, 8).stiffness.size(), 0);
 }
 
+TEST(OutsideModes, TheNinthDecileLeavesOutWhatCollapsed) {
+  Vector sizes = Vector::LinSpaced(21, 1, 21);
+  sizes[4] = 1e6;
+  EXPECT_EQ(ninth_decile(sizes), 20);
+  EXPECT_EQ(ninth_decile(Vector::Constant(1, 3)), 3);
+  EXPECT_THROW(ninth_decile({}), std::invalid_argument);
+}
+
 /// An indicator that has all components of a bar, with weight 1, in the subspace and along two displacements outside.
 template <Subspace S>
 struct ExactIndicator {
