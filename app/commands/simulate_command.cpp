@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace supple {
 
@@ -107,7 +108,7 @@ void draw_energies(const std::filesystem::path& path, const Simulation& run) {
 }
 
 Json report_json(const SimulateCommand& command, const Scene& scene, const SimulationOptions& options,
-                 const Simulation& run, const Effort& effort) {
+                 const Simulation& run, const Effort& effort, const std::optional<IndicatedError>& error) {
   Json json;
   json["command"] = "simulate";
   json["version"] = SUPPLE_VERSION;
@@ -131,15 +132,13 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["refreshes"] = effort.refreshes;
   json["worst_residual"] = effort.worst_residual;
   json["missed_steps"] = effort.missed;
-  if (!run.errors.empty()) {
-    const IndicatedError error(run.errors);
-    json["indicated_error"] = {{"relative", error.relative},
-                               {"worst", error.worst},
-                               {"worst_time", error.worst_time},
+  if (error)
+    json["indicated_error"] = {{"relative", error->relative},
+                               {"worst", error->worst},
+                               {"worst_time", error->worst_time},
                                {"estimates", run.errors.size()},
-                               {"beyond_training", error.beyond_training},
+                               {"beyond_training", error->beyond_training},
                                {"share_of_steps", run.estimate_seconds / run.integration_seconds}};
-  }
   json["frames"] = run.times.size();
   json["every"] = options.every;
   json["tracked"] = Json::array();
@@ -151,7 +150,8 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
 }
 
 void print_summary(const SimulateCommand& command, const Scene& scene, const SimulationOptions& options,
-                   const Simulation& run, const Effort& effort, double reconstruction) {
+                   const Simulation& run, const Effort& effort, const std::optional<IndicatedError>& error,
+                   double reconstruction) {
   Rows rows{
       {"scene", scene.description},
       {"system", (command.full ? "full, " : "reduced, ") + shown_count(run.unknowns) + " unknowns"},
@@ -161,11 +161,9 @@ void print_summary(const SimulateCommand& command, const Scene& scene, const Sim
       {"iterations", shown(effort.mean_iterations, 3) + " a step, " + std::to_string(effort.most_iterations) +
                          " at most; " + shown_count(effort.refreshes) + " tangents"},
       {"residual", "at most " + shown(effort.worst_residual, 2) + ", asked for " + shown(options.steps.tolerance)}};
-  if (!run.errors.empty()) {
-    const IndicatedError error(run.errors);
-    rows.emplace_back("indicated error", shown_percent(error.relative) + ", at worst " + shown_percent(error.worst) +
-                                             " at t = " + shown(error.worst_time, 3) + " s");
-  }
+  if (error)
+    rows.emplace_back("indicated error", shown_percent(error->relative) + ", at worst " + shown_percent(error->worst) +
+                                             " at t = " + shown(error->worst_time, 3) + " s");
   if (reconstruction > 0)
     rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(run.times.size()), 3) +
                                             " ms a frame of all nodes");
@@ -197,6 +195,8 @@ void SimulateCommand::run() const {
   times.add("energies and frames", times.current() - result.setup_seconds - result.integration_seconds);
   times.restart();
   const Effort effort(result);
+  std::optional<IndicatedError> error;
+  if (!result.errors.empty()) error.emplace(result.errors);
   double reconstruction = 0;
   if (!output.empty()) {
     Trajectory trajectory = trajectory_of(result, options, !full);
@@ -217,13 +217,13 @@ void SimulateCommand::run() const {
     times.finish("results");
   }
   clear_progress();
-  Json report = report_json(*this, what, options, result, effort);
+  Json report = report_json(*this, what, options, result, effort, error);
   report["reconstruction_seconds"] = reconstruction;
   report["seconds"] = json_seconds(times.seconds(), times.total());
   report["peak_memory"] = peak_resident_memory();
   if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) {
-    print_summary(*this, what, options, result, effort, reconstruction);
+    print_summary(*this, what, options, result, effort, error, reconstruction);
     print_stages(stdout, times.seconds(), times.total());
   }
   write_json(json, report);
@@ -231,13 +231,10 @@ void SimulateCommand::run() const {
     throw SolverError("step " + std::to_string(result.num_steps()) +
                       " (t = " + shown(static_cast<double>(result.num_steps()) * options.step) +
                       " s) is not finite; the results end before it. A shorter --step or --solver newton may help");
-  if (!result.errors.empty()) {
-    const IndicatedError error(result.errors);
-    if (error.beyond_training > 0)
-      warn("from t = " + shown(error.first_beyond, 3) + " s on " + std::to_string(error.beyond_training) + " of " +
-           std::to_string(result.errors.size()) +
-           " states are larger than what forces were fitted to; they may be wrong by more than is indicated");
-  }
+  if (error && error->beyond_training > 0)
+    warn("from t = " + shown(error->first_beyond, 3) + " s on " + std::to_string(error->beyond_training) + " of " +
+         std::to_string(result.errors.size()) +
+         " states are larger than what forces were fitted to; they may be wrong by more than is indicated");
   if (effort.missed > 0)
     warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) + " steps missed the tolerance " +
          shown(options.steps.tolerance) + " (worst residual " + shown(effort.worst_residual, 2) +

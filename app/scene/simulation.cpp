@@ -265,7 +265,6 @@ Simulation simulate_reduced(const ReducedModel& model, const Scene& scene, const
                             const Progress& progress) {
   const Stopwatch watch;
   const AnySystem<Matrix> system = model.system(options.precision);
-  const double construction = watch.seconds();
   Estimate estimate;
   if (const std::optional<ErrorEstimator> states = error_estimator(model))
     estimate = [&system, estimator = MotionErrorEstimator(*states, options.steps.damping),
@@ -278,6 +277,7 @@ Simulation simulate_reduced(const ReducedModel& model, const Scene& scene, const
                          .size = q.norm() / root_mass,
                          .beyond_training = error.beyond_training};
     };
+  const double construction = watch.seconds();
   Simulation result = integrate(
       system, scene, options, [](VectorIn q) -> Vector { return q; }, estimate, progress);
   result.setup_seconds += construction;

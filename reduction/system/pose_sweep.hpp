@@ -82,14 +82,8 @@ RowMatrix component_rows(const Model& model, const S& subspace, Index i) {
 
 /// The rows of a subspace that determine a component, as those of a dense basis: num_active_dofs × d.
 template <ForceModel Model, Subspace S>
-RowMatrix dense_component_rows(const Model& model, const S& subspace, Index i) {
-  const RowMatrix E = component_rows(model, subspace, i);
-  if constexpr (S::block == 1) return E;
-  RowMatrix rows = RowMatrix::Zero(E.rows() * S::block, E.cols() * S::block);
-  for (Index r = 0; r < E.rows(); ++r)
-    for (Index a = 0; a < E.cols(); ++a)
-      for (int x = 0; x < S::block; ++x) rows(r * S::block + x, a * S::block + x) = E(r, a);
-  return rows;
+Matrix dense_component_rows(const Model& model, const S& subspace, Index i) {
+  return KroneckerBasis<S::block>{component_rows(model, subspace, i), {}}.dense();
 }
 
 /// fields = U q for a pack of eight poses: W times p × (block · 8).

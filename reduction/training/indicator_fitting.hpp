@@ -29,20 +29,20 @@ OutsideModes outside_modes(const Matrix& remainders, const Vector& sizes, const 
 /// What nine in ten do not exceed: a pose or two that have collapsed do not tell what was trained.
 double ninth_decile(Vector sizes);
 
-/// Vᵀ fᵢ(u_t) of some components: entry (t k + j, i) along column j of V at state t.
-/// \param V  of all nodes, W. \param U  displacements of all nodes, n · node_dim × T.
-template <ForceModel Model>
-Matrix forces_along(const std::shared_ptr<const Model>& model, const DenseBasis& V, const Matrix& U,
+/// Vᵀ fᵢ(U q_t) of some components: entry (t k + j, i) along column j of V at pose t.
+/// \param V  of all nodes, W. \param Q  d × T.
+template <ForceModel Model, Subspace S>
+Matrix forces_along(const std::shared_ptr<const Model>& model, const DenseBasis& V, const S& subspace, const Matrix& Q,
                     std::span<const Index> components) {
   constexpr Index local = num_active_dofs<Model>, first_dof = Model::local_dofs - local;
-  const Index k = V.dim(), T = U.cols();
+  const Index k = V.dim(), T = Q.cols();
+  const RowMatrix packed = pack_poses<S::block>(Q);
   Matrix result(k * T, static_cast<Index>(components.size()));
-  AlignedBuffer fields(U.rows() * Pack::size);
+  AlignedBuffer fields(subspace.full_dim() * Pack::size);
   for (Index first = 0; first < T; first += Pack::size) {
     const Index count = std::min<Index>(Pack::size, T - first);
-    parallel_ranges(U.rows(), 4096, [&](Index begin, Index end) {
-      for (Index r = begin; r < end; ++r)
-        for (Index t = 0; t < Pack::size; ++t) fields[r * Pack::size + t] = t < count ? U(r, first + t) : 0;
+    parallel_ranges(subspace.W.rows(), 4096, [&](Index begin, Index end) {
+      reconstruct_poses(subspace, packed, first / Pack::size, begin, end, fields.data());
     });
     parallel_for(result.cols(), [&](Index c) {
       const Index i = components[c];
@@ -93,8 +93,7 @@ std::optional<ErrorIndicator> fit_indicator(const FullSystem<Model>& system, con
   A.topRows(own) = equilibria.columns(candidates).values();
   const Vector per_row =
       -equilibria.scale() * (outside.stiffness.cwiseInverse() * sizes.cwiseInverse().transpose()).reshaped();
-  A.middleRows(own, along) =
-      per_row.asDiagonal() * forces_along(model, V, reconstruct_columns(subspace, Q), candidates);
+  A.middleRows(own, along) = per_row.asDiagonal() * forces_along(model, V, subspace, Q, candidates);
   parallel_for(A.cols(), [&](Index c) { rest.column(candidates[c], A.col(c).tail(rest.rows())); });
   b << equilibria.rhs(), equilibria.scale() * outside.coordinates.reshaped(), rest.rhs();
 
