@@ -8,6 +8,7 @@
 #include <app/commands/reduce_command.hpp>
 #include <app/commands/select_command.hpp>
 #include <app/commands/simulate_command.hpp>
+#include <app/commands/stress_command.hpp>
 #include <app/report/exit_guard.hpp>
 #include <app/report/terminal.hpp>
 #include <core/check.hpp>
@@ -28,8 +29,9 @@ namespace {
 using namespace supple;
 
 /// In the order of the help.
-using Commands = std::tuple<ReduceCommand, SimulateCommand, EditCommand, FidelityCommand, CompareCommand,
-                            CompareSelectorsCommand, ParetoCommand, SelectCommand, InfoCommand, MeshCommand>;
+using Commands =
+    std::tuple<ReduceCommand, SimulateCommand, EditCommand, FidelityCommand, CompareCommand, CompareSelectorsCommand,
+               ParetoCommand, StressCommand, SelectCommand, InfoCommand, MeshCommand>;
 
 /// Messages of any origin on one line.
 int fail(int code, std::string message) {

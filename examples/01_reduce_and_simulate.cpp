@@ -5,7 +5,7 @@
 //   after 1.00 s the tip has moved by (-0.14, -0.40, 0.03) m
 #include <io/builtin/builtin_meshes.hpp>
 #include <io/mesh/node_sets.hpp>
-#include <physics/time/newmark.hpp>
+#include <physics/time/average_vector_field.hpp>
 #include <reduction/pipeline/reduce.hpp>
 
 #include <cstdio>
@@ -25,12 +25,12 @@ int main() {
 
   const Index tip = select_nodes(mesh.nodes, "x>99%").front();
   const auto system = model.system();  // a value: keep it, copy it, pass it on
-  Newmark newmark(system, 0.01, {.damping = {.beta = 0.002}, .solver = Bfgs{}});
-  State state = newmark.at_rest();
+  AverageVectorField integrator(system, 0.01, {.damping = {.beta = 0.002}, .solver = Bfgs{}});
+  State state = integrator.at_rest();
   const auto load = system.project({.gravity = {0, -1.5, 0}});
-  newmark.balance(load, state);
+  integrator.balance(load, state);
   for (int step = 0; step < 100; ++step)
-    if (newmark.step(load, state).status != Status::Converged) return 1;
+    if (integrator.step(load, state).status != Status::Converged) return 1;
   const Point u = system.displacement(state.u, tip);
   std::printf("after %.2f s the tip has moved by (%.2f, %.2f, %.2f) m\n", state.time, u[0], u[1], u[2]);
 }

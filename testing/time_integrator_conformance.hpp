@@ -141,6 +141,7 @@ TYPED_TEST_P(TimeIntegratorConformance, TheEnergyOfALinearOscillatorBehavesAsItS
           ASSERT_LE(now, before + 1e-10 * start) << "step " << step << " of " << share << " periods";
           break;
         case EnergyBehaviour::Bounded:
+        case EnergyBehaviour::BoundedForShortSteps:
           if (share <= 0.1) {
             ASSERT_LE(now, 1.1 * start) << "step " << step;
           }
@@ -149,6 +150,7 @@ TYPED_TEST_P(TimeIntegratorConformance, TheEnergyOfALinearOscillatorBehavesAsItS
       before = now;
       if (now < 1e-30 * start) break;  // what is left would soon underflow
     }
+    if (integrator.energy_behaviour() == EnergyBehaviour::BoundedForShortSteps) break;
     EXPECT_LE(before, start * (1 + 1e-8)) << "after 300 steps of " << share << " periods";
   }
 }

@@ -77,7 +77,7 @@ ParetoPoint point_of(const ReduceOptions& options, const ReduceReport& report, d
           .step_seconds = motion.step_seconds,
           .mean_iterations = motion.mean_iterations,
           .missed_steps = motion.missed_steps,
-          .finite = motion.finite,
+          .complete = motion.complete,
           .full_error = report.full_error,
           .training_error = report.training_error,
           .held_out_error = report.held_out_error,
@@ -162,8 +162,8 @@ class Sweep {
     for (const double tolerance : tolerances) {
       const ParetoPoint& point =
           points.emplace_back(point_of(options, report, tolerance, motions->measure(model, tolerance, progress_)));
-      if (!point.finite)
-        warn(point.model + ": the motion is not finite");
+      if (!point.complete)
+        warn(point.model + ": the motion does not run to its end");
       else if (point.missed_steps > 0)
         warn(point.model + ": " + std::to_string(point.missed_steps) + " of " +
              std::to_string(motions->options().num_steps) + " steps missed the tolerance " + shown(tolerance));

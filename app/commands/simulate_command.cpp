@@ -36,6 +36,7 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
   if (command.step) scene.step = option_quantity("--step", *command.step, "s");
   if (command.solver) scene.solver = solver_named(step_solvers, *command.solver);
   if (command.tolerance) scene.tolerance = *command.tolerance;
+  if (command.halvings) scene.max_halvings = *command.halvings;
   if (command.every) scene.every = *command.every;
   if (!command.track.empty()) scene.track = command.track;
   for (const Index node : scene.track)
@@ -56,11 +57,14 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
 }
 
 void write_energies(const std::filesystem::path& path, const Simulation& run) {
-  CsvTable table{{"time", "s"},  {"kinetic", "J"}, {"elastic", "J"}, {"work", "J"},
-                 {"iterations"}, {"refreshes"},    {"residual"},     {"status"}};
-  for (const StepRecord& step : run.steps)
-    table.add_row(step.time, step.kinetic, step.elastic, step.work, step.iterations, step.refreshes, step.residual,
-                  to_string(step.status));
+  CsvTable table{{"time", "s"}, {"kinetic", "J"}, {"elastic", "J"}, {"work", "J"}, {"damped", "J"},
+                 {"made", "J"}, {"iterations"},   {"refreshes"},    {"residual"},  {"status"}};
+  for (const StepRecord& step : run.steps) {
+    const bool is_end = !run.complete() && &step == &run.steps.back();
+    table.add_row(step.time, step.energy.kinetic, step.energy.elastic, step.energy.work, step.energy.damped,
+                  step.energy.made(), step.iterations, step.refreshes, step.residual,
+                  is_end ? to_string(run.ending) : to_string(step.status));
+  }
   const ExitGuard guard;
   write_csv(path, table);
 }
@@ -90,12 +94,14 @@ void write_tracked(const std::filesystem::path& path, const Scene& scene, const 
 
 void draw_energies(const std::filesystem::path& path, const Simulation& run) {
   const Index count = static_cast<Index>(run.steps.size());
-  Vector time(count), kinetic(count), elastic(count), work(count);
+  Vector time(count), kinetic(count), elastic(count), work(count), accounted(count);
   for (Index k = 0; k < count; ++k) {
     time[k] = run.steps[k].time;
-    kinetic[k] = run.steps[k].kinetic;
-    elastic[k] = run.steps[k].elastic;
-    work[k] = run.steps[k].work;
+    const EnergyBalance& energy = run.steps[k].energy;
+    kinetic[k] = energy.kinetic;
+    elastic[k] = energy.elastic;
+    work[k] = energy.work;
+    accounted[k] = energy.start + energy.work - energy.damped;
   }
   const ExitGuard guard;
   draw_plot(path, {.title = "Energy",
@@ -104,7 +110,8 @@ void draw_energies(const std::filesystem::path& path, const Simulation& run) {
                    .series = {{"kinetic", time, kinetic},
                               {"elastic", time, elastic},
                               {"kinetic + elastic", time, kinetic + elastic},
-                              {"work of loads", time, work, PlotStyle::DashedLine}}});
+                              {"work of loads", time, work, PlotStyle::DashedLine},
+                              {"work less what damping took", time, accounted, PlotStyle::DashedLine}}});
 }
 
 Json report_json(const SimulateCommand& command, const Scene& scene, const SimulationOptions& options,
@@ -117,8 +124,8 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["unknowns"] = run.unknowns;
   json["scene"] = command.scene ? command.scene->string() : "pluck";
   json["description"] = scene.description;
-  json["status"] = run.finite() ? "complete" : "not-finite";
-  json["duration"] = run.steps[run.finite() ? run.num_steps() : run.num_steps() - 1].time;
+  json["status"] = to_string(run.ending);
+  json["duration"] = run.last_good().time;
   json["step"] = options.step;
   json["steps"] = run.num_steps();
   json["integrator"] = options.integrator.name;
@@ -132,6 +139,11 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["refreshes"] = effort.refreshes;
   json["worst_residual"] = effort.worst_residual;
   json["missed_steps"] = effort.missed;
+  json["halved_steps"] = run.halved_steps;
+  const EnergyBalance& energy = run.last_good().energy;
+  json["energy"] = {{"kinetic", energy.kinetic},         {"elastic", energy.elastic}, {"work", energy.work},
+                    {"damped", energy.damped},           {"made", energy.made()},     {"most_made", effort.energy_made},
+                    {"most_taken", -effort.energy_taken}};
   if (error)
     json["indicated_error"] = {{"relative", error->relative},
                                {"worst", error->worst},
@@ -161,6 +173,10 @@ void print_summary(const SimulateCommand& command, const Scene& scene, const Sim
       {"iterations", shown(effort.mean_iterations, 3) + " a step, " + std::to_string(effort.most_iterations) +
                          " at most; " + shown_count(effort.refreshes) + " tangents"},
       {"residual", "at most " + shown(effort.worst_residual, 2) + ", asked for " + shown(options.steps.tolerance)}};
+  if (run.halved_steps > 0) rows.emplace_back("halved steps", shown_count(run.halved_steps) + " were taken in parts");
+  rows.emplace_back("energy balance", "the integrator made at most " + shown_percent(effort.energy_made) +
+                                          " of what loads brought, took at most " +
+                                          shown_percent(-effort.energy_taken));
   if (error)
     rows.emplace_back("indicated error", shown_percent(error->relative) + ", at worst " + shown_percent(error->worst) +
                                              " at t = " + shown(error->worst_time, 3) + " s");
@@ -227,14 +243,15 @@ void SimulateCommand::run() const {
     print_stages(stdout, times.seconds(), times.total());
   }
   write_json(json, report);
-  if (!result.finite())
-    throw SolverError("step " + std::to_string(result.num_steps()) +
-                      " (t = " + shown(static_cast<double>(result.num_steps()) * options.step) +
-                      " s) is not finite; the results end before it. A shorter --step or --solver newton may help");
+  if (!result.complete()) throw SolverError(reason_to_end(result, options) + "; the results end before it");
   if (error && error->beyond_training > 0)
     warn("from t = " + shown(error->first_beyond, 3) + " s on " + std::to_string(error->beyond_training) + " of " +
          std::to_string(result.errors.size()) +
          " states are larger than what forces were fitted to; they may be wrong by more than is indicated");
+  if (effort.energy_made > 0.01)
+    warn(
+        "the integrator, " + options.integrator.name + ", made " + shown_percent(effort.energy_made) +
+        " of energy that no load brought; a shorter --step, or --integrator average-vector-field or tr-bdf2, may help");
   if (effort.missed > 0)
     warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) + " steps missed the tolerance " +
          shown(options.steps.tolerance) + " (worst residual " + shown(effort.worst_residual, 2) +
@@ -251,11 +268,14 @@ void SimulateCommand::declare(CLI::App& app) {
   command.add_flag("--full", full, "Run the unreduced system instead: all nodes");
   command.add_option("--time", time, "Duration [s], instead of the scene's")->type_name("T");
   command.add_option("--step", step, "Time step [s], instead of the scene's")->type_name("H");
-  command.add_option("--integrator", integrator, "How it moves in time, see below [newmark]")
+  command.add_option("--integrator", integrator, "How it moves in time, see below [average-vector-field]")
       ->type_name("NAME[:OPTION=VALUE...]")
       ->check(known_in(integrators()));
   command.add_option("--solver", solver, "Nonlinear solver [bfgs; full: warped-bfgs]")
       ->check(CLI::IsMember(solver_names(step_solvers)));
+  command.add_option("--halvings", halvings, "How often a step that fails may be halved [6]")
+      ->type_name("N")
+      ->check(CLI::Range(0, 20));
   command.add_option("--tolerance", tolerance, "Relative residual of a step [1e-6]")
       ->type_name("SHARE")
       ->check(positive_number());

@@ -22,6 +22,7 @@ struct SimulateCommand {
   std::optional<std::string> time, step;
   std::optional<std::string> integrator, solver;
   std::optional<double> tolerance;
+  std::optional<Index> halvings;         ///< StepControl::max_halvings
   std::optional<std::string> precision;  ///< double or single; see complete()
   std::optional<Index> every;
   std::vector<Index> track;

@@ -42,7 +42,7 @@ TextTable table_of(const std::vector<ParetoPoint>& points, ParetoError error) {
     row.insert(row.end(), {shown(1e6 * p.step_seconds, 3), shown(p.mean_iterations, 3), percent(p.full_error.total),
                            percent(p.full_error.outside), percent(p.full_error.inside)});
     if (motions) row.push_back(percent(p.trajectory_error));
-    row.insert(row.end(), {shown(p.reduce_seconds, 3), p.front ? "yes" : p.finite ? "" : "not finite"});
+    row.insert(row.end(), {shown(p.reduce_seconds, 3), p.front ? "yes" : p.complete ? "" : "stops early"});
   }
   return table;
 }
@@ -77,7 +77,7 @@ Axis around(std::string label, const std::vector<double>& values) {
 void mark_front(std::vector<ParetoPoint>& points, ParetoError error) {
   std::vector<ModelMeasure> measures;
   for (const ParetoPoint& p : points)
-    measures.push_back({p.step_seconds, p.finite ? error_of(p, error) : std::numeric_limits<double>::quiet_NaN()});
+    measures.push_back({p.step_seconds, p.complete ? error_of(p, error) : std::numeric_limits<double>::quiet_NaN()});
   const std::vector<bool> front = pareto_front(measures);
   for (std::size_t k = 0; k < points.size(); ++k) points[k].front = front[k];
 }
@@ -94,7 +94,7 @@ Json points_json(const std::vector<ParetoPoint>& points) {
                     {"step_seconds", p.step_seconds},
                     {"mean_iterations", p.mean_iterations},
                     {"missed_steps", p.missed_steps},
-                    {"status", p.finite ? "complete" : "not-finite"},
+                    {"status", p.complete ? "complete" : "stopped"},
                     {"full_error", json_full_error(p.full_error)},
                     {"trajectory_error", p.trajectory_error},
                     {"training_error", p.training_error},

@@ -21,7 +21,7 @@ struct ParetoPoint {
   double step_seconds = 0;     ///< of a step, median [s]
   double mean_iterations = 0;  ///< of a step
   Index missed_steps = 0;      ///< that did not reach the tolerance
-  bool finite = true;          ///< whether the motion stays so; else the point is on no front
+  bool complete = true;        ///< whether the motion runs to its end; else the point is on no front
   FullError full_error;        ///< of equilibria
   double training_error = 0, held_out_error = 0;
   double trajectory_error =

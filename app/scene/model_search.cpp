@@ -53,7 +53,7 @@ ModelSearch search(const Body& body, const std::vector<ModelRung>& ladder, const
       if (timed) {
         if (!motions) motions.emplace(pluck_scene(model), model);
         const MotionMeasure motion = motions->measure(model, {}, progress);
-        if (!motion.finite) throw SolverError("its motion is not finite");
+        if (!motion.complete) throw SolverError("its motion does not run to its end");
         measure.step_seconds = motion.step_seconds;
         times.add(rung, motion.step_seconds);
       }

@@ -21,9 +21,7 @@ void add_seconds(const Simulation& run, std::vector<double>& seconds) {
 void MotionStudy::run_full(const ReducedModel& model, const Progress& progress) {
   const SimulationOptions options = for_full_system(options_);
   const Simulation run = simulate_full(model.body, scene_, options, progress);
-  if (!run.finite())
-    throw SolverError("the motion of the full object is not finite in step " + std::to_string(run.num_steps()) +
-                      "; a shorter --step may help");
+  if (!run.complete()) throw SolverError("the full object: " + reason_to_end(run, options));
   std::vector<double> seconds;
   add_seconds(run, seconds);
   full_step_seconds_ = median(std::move(seconds));
@@ -40,9 +38,9 @@ MotionMeasure MotionStudy::measure(const ReducedModel& model, std::optional<doub
   MotionMeasure measure{.step_seconds = 0,
                         .mean_iterations = effort.mean_iterations,
                         .missed_steps = effort.missed,
-                        .finite = run.finite(),
+                        .complete = run.complete(),
                         .trajectory_error = std::numeric_limits<double>::quiet_NaN()};
-  if (reference_ && run.finite()) {
+  if (reference_ && run.complete()) {
     std::vector<std::pair<Index, Index>> frames;
     for (Index f = 0; f < reference_->num_frames(); ++f) frames.emplace_back(f, f);
     const Trajectory trajectory = trajectory_of(run, options, /*reduced=*/true);
@@ -51,7 +49,7 @@ MotionMeasure MotionStudy::measure(const ReducedModel& model, std::optional<doub
   std::vector<double> seconds;
   add_seconds(run, seconds);
   double spent = run.integration_seconds;
-  for (int runs = 1; runs < most_runs && spent < enough && run.finite(); ++runs) {
+  for (int runs = 1; runs < most_runs && spent < enough && run.complete(); ++runs) {
     run = simulate_reduced(model, scene, options, progress);
     add_seconds(run, seconds);
     spent += run.integration_seconds;

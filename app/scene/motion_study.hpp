@@ -13,8 +13,8 @@ struct MotionMeasure {
   double step_seconds = 0;     ///< of a step, median [s]
   double mean_iterations = 0;  ///< of a step
   Index missed_steps = 0;      ///< those that did not reach the tolerance
-  bool finite = true;          ///< whether the motion stays so
-  /// Of positions against the full object, see Deviation::relative(); NaN if that was not run, or the motion is not finite.
+  bool complete = true;        ///< whether the motion runs to its end
+  /// Of positions against the full object, see Deviation::relative(); NaN if that was not run, or the motion is not complete.
   double trajectory_error = 0;
 };
 
@@ -24,7 +24,7 @@ class MotionStudy {
   /// \param scene  what it leaves open is decided as for `model`, see complete().
   MotionStudy(Scene scene, const ReducedModel& model) : scene_(std::move(scene)), options_(complete(scene_, model)) {}
 
-  /// Runs the full object, which takes as long as it takes. \throws SolverError if that motion is not finite.
+  /// Runs the full object, which takes as long as it takes. \throws SolverError if that motion is not complete.
   void run_full(const ReducedModel& model, const Progress& progress);
   /// \param tolerance  of a step, instead of the scene's.
   MotionMeasure measure(const ReducedModel& model, std::optional<double> tolerance, const Progress& progress) const;

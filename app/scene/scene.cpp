@@ -203,6 +203,7 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
       scene.solver = solver_named(step_solvers, solver->choice("method", solver_names(step_solvers)));
     if (solver->contains("tolerance")) scene.tolerance = solver->number("tolerance", positive);
     if (solver->contains("max_iterations")) scene.max_iterations = solver->integer("max_iterations", at_least(1));
+    if (solver->contains("max_halvings")) scene.max_halvings = solver->integer("max_halvings", between(0, 20));
     for (const std::string_view moved : {"beta", "gamma"})
       if (solver->contains(moved))
         solver->fail(moved, "belongs to the integrator: \"integrator\": {\"method\": \"newmark\", \"" +

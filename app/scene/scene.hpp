@@ -58,7 +58,7 @@ struct Scene {
   std::optional<Choice> integrator;  ///< one of integrators()
   std::optional<NonlinearSolver> solver;
   std::optional<double> tolerance;
-  std::optional<Index> max_iterations, every;
+  std::optional<Index> max_iterations, max_halvings, every;
   std::vector<Index> track;  ///< nodes
   std::string description;   ///< in a line
 };

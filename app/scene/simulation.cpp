@@ -102,17 +102,17 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
 
   Stopwatch setup;
   SceneLoads loads(system, scene);
-  auto integrator = make_integrator(options.integrator, system, options.step, options.steps);
+  ControlledIntegrator<AnySystem<MatrixType>> integrator(
+      system, options.step, [&](double h) { return make_integrator(options.integrator, system, h, options.steps); },
+      options.steps.damping, options.control);
   State state = integrator.at_rest();
   integrator.balance(loads.at(0), state);
-  Vector external = loads.at(0).at(state.u);
   result.setup_seconds = setup.seconds();
 
-  const auto record = [&](const StepReport& report, double work, double seconds) {
+  const auto record = [&](const StepReport& report, const EnergyBalance& energy, double seconds) {
     const Index k = static_cast<Index>(result.steps.size());
-    result.steps.push_back({static_cast<double>(k) * options.step,
-                            0.5 * state.v.dot(system.mass().cwiseProduct(state.v)), system.energy(state.u), work,
-                            report.iterations, report.tangents, report.residual, seconds, report.status});
+    result.steps.push_back({static_cast<double>(k) * options.step, energy, report.iterations, report.tangents,
+                            report.residual, seconds, report.status});
     for (std::size_t j = 0; j < scene.track.size(); ++j)
       result.tracked.template block<1, 3>(k, 3 * j) = system.displacement(state.u, scene.track[j]).transpose();
     if (k % options.every != 0) return;
@@ -135,24 +135,25 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
   StepReport start;
   start.status = Status::Converged;
   start.residual = 0;
-  record(start, 0, 0);
+  record(start, {}, 0);
   for (Index k = 1; k <= options.num_steps; ++k) {
-    const Vector u_before = state.u;
     Stopwatch watch;
     const StepReport report = integrator.step(during(k), state);
     state.time = static_cast<double>(k) * options.step;  // rounding does not add up
     const double seconds = watch.seconds();
     result.integration_seconds += seconds;
-    const bool finite = report.status != Status::NotFinite && state.u.allFinite() && state.v.allFinite();
-    if (!finite) {
+    if (report.status == Status::NotFinite)
+      result.ending = Ending::NotFinite;
+    else if (integrator.energies().made_share() > 1)
+      result.ending = Ending::EnergyFromNothing;
+    if (!result.complete()) {
+      result.refused = integrator.energies();
       result.steps.push_back(result.steps.back());
-      result.steps.back().status = Status::NotFinite;
       result.steps.back().residual = report.residual;
+      result.steps.back().status = report.status;
       break;
     }
-    const Vector now = loads.at(static_cast<double>(k) * options.step).at(state.u);
-    record(report, result.steps.back().work + 0.5 * (external + now).dot(state.u - u_before), seconds);
-    external = now;
+    record(report, integrator.energies(), seconds);
     if (estimate && (k % estimate_every == 0 || k == options.num_steps)) {
       watch.restart();
       result.errors.push_back(estimate(state.time, state.u));
@@ -160,11 +161,12 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
     }
     tell(progress, "time steps", static_cast<double>(k) / static_cast<double>(options.num_steps));
   }
+  result.halved_steps = integrator.halved_steps();
   const Index frames = static_cast<Index>(result.times.size());
   result.u.conservativeResize(frames, Eigen::NoChange);
   result.v.conservativeResize(frames, Eigen::NoChange);
   result.tracked.conservativeResize(static_cast<Index>(result.steps.size()), Eigen::NoChange);
-  if (!result.finite()) result.tracked.bottomRows(1) = result.tracked.row(result.tracked.rows() - 2).eval();
+  if (!result.complete()) result.tracked.bottomRows(1) = result.tracked.row(result.tracked.rows() - 2).eval();
   return result;
 }
 
@@ -174,13 +176,26 @@ RowPrecision default_precision(const ReducedModel& model) {
                                                                                    : RowPrecision::Double;
 }
 
+/// How long the loads of a scene, all at once, take to carry the whole object by its own diagonal from rest [s]; springs and
+/// other forces do not count.
+double time_across(const Scene& scene, const Body& body) {
+  const Vector mass = nodal_mass(body);
+  double acceleration = 0;
+  for (const TimedLoads& timed : scene.loads) {
+    Point force = mass.sum() * timed.loads.gravity;
+    for (const NodalForce& load : timed.loads.forces) force += load.force;
+    acceleration += force.norm() / mass.sum();
+  }
+  return std::sqrt(2 * bounding_box(node_positions(body)).diagonal() / acceleration);  // infinite without loads
+}
+
 }  // namespace
 
 SimulationOptions complete(Scene& scene, const ReducedModel& model) {
   if (!scene.duration || !scene.step || scene.track.empty()) {
     const Scene pluck = pluck_scene(model);
     if (!scene.duration) scene.duration = pluck.duration;
-    if (!scene.step) scene.step = pluck.step;
+    if (!scene.step) scene.step = std::min(*pluck.step, time_across(scene, model.body) / 60);
     if (scene.track.empty()) scene.track = pluck.track;
   }
   if (!(*scene.duration > 0)) throw InputError("the duration is " + shown(*scene.duration) + " s, expected > 0");
@@ -199,6 +214,7 @@ SimulationOptions complete(Scene& scene, const ReducedModel& model) {
   if (!is_step_solver_for(false, options.steps.solver)) options.steps.solver = Bfgs{};
   if (scene.tolerance) options.steps.tolerance = *scene.tolerance;
   if (scene.max_iterations) options.steps.max_iterations = *scene.max_iterations;
+  if (scene.max_halvings) options.control.max_halvings = static_cast<int>(*scene.max_halvings);
   options.precision = default_precision(model);
   return options;
 }
@@ -209,6 +225,29 @@ SimulationOptions for_full_system(SimulationOptions options) {
   return options;
 }
 
+std::string_view to_string(Ending ending) {
+  switch (ending) {
+    case Ending::Complete:
+      return "complete";
+    case Ending::NotFinite:
+      return "not-finite";
+    case Ending::EnergyFromNothing:
+      return "energy-from-nothing";
+  }
+  return "";
+}
+
+std::string reason_to_end(const Simulation& run, const SimulationOptions& options) {
+  const std::string step = "step " + std::to_string(run.num_steps()) +
+                           " (t = " + shown(static_cast<double>(run.num_steps()) * options.step) + " s) ";
+  if (run.ending == Ending::NotFinite) return step + "is not finite. A shorter --step or --solver newton may help";
+  return step + "has " + shown(run.refused.kinetic + run.refused.elastic) + " J where loads have done " +
+         shown(run.refused.work) + " J of work: energy from nothing, which " + options.integrator.name +
+         " makes in such large motions. A shorter --step, --integrator average-vector-field, which keeps the energy, "
+         "or "
+         "tr-bdf2, which never makes any of its own, may help";
+}
+
 Effort::Effort(const Simulation& run) {
   for (Index k = 1; k <= run.num_steps(); ++k) {
     const StepRecord& step = run.steps[k];
@@ -216,6 +255,8 @@ Effort::Effort(const Simulation& run) {
     most_iterations = std::max(most_iterations, step.iterations);
     refreshes += step.refreshes;
     if (std::isfinite(step.residual)) worst_residual = std::max(worst_residual, step.residual);
+    energy_made = std::max(energy_made, step.energy.made_share());
+    energy_taken = std::min(energy_taken, step.energy.made_share());
     missed += step.status != Status::Converged;
   }
   if (run.integration_seconds > 0) steps_per_second = static_cast<double>(run.num_steps()) / run.integration_seconds;
@@ -254,9 +295,9 @@ Trajectory trajectory_of(const Simulation& run, const SimulationOptions& options
     values->resize(trajectory.num_frames());
   for (Index f = 0; f < trajectory.num_frames(); ++f) {
     const StepRecord& step = run.steps[f * options.every];
-    trajectory.kinetic[f] = step.kinetic;
-    trajectory.elastic[f] = step.elastic;
-    trajectory.work[f] = step.work;
+    trajectory.kinetic[f] = step.energy.kinetic;
+    trajectory.elastic[f] = step.energy.elastic;
+    trajectory.work[f] = step.energy.work;
   }
   return trajectory;
 }

@@ -4,7 +4,9 @@
 #include <app/scene/scene.hpp>
 #include <app/scene/trajectory.hpp>
 #include <core/progress.hpp>
+#include <physics/time/energy_account.hpp>
 #include <physics/time/implicit_step.hpp>
+#include <physics/time/step_control.hpp>
 #include <reduction/model/reduced_model.hpp>
 
 #include <vector>
@@ -14,9 +16,10 @@ namespace supple {
 struct SimulationOptions {
   double step = 0;  ///< [s]
   Index num_steps = 0;
-  Index every = 1;               ///< a frame after so many steps
-  Choice integrator{"newmark"};  ///< one of integrators()
+  Index every = 1;                            ///< a frame after so many steps
+  Choice integrator{"average-vector-field"};  ///< one of integrators()
   StepOptions steps;
+  StepControl control;
   RowPrecision precision = RowPrecision::Double;  ///< of a reduced system
 };
 
@@ -28,8 +31,8 @@ SimulationOptions for_full_system(SimulationOptions options);
 
 /// The state after a step, and what the step took.
 struct StepRecord {
-  double time = 0;                            ///< [s]
-  double kinetic = 0, elastic = 0, work = 0;  ///< energies, and the work of loads and springs so far [J]
+  double time = 0;  ///< [s]
+  EnergyBalance energy;
   Index iterations = 0, refreshes = 0;
   double residual = 0;  ///< relative, see StepOptions::tolerance
   double seconds = 0;   ///< wall-clock time of the step alone [s]
@@ -44,11 +47,21 @@ struct ErrorRecord {
   bool beyond_training = false;            ///< larger than what forces were fitted to
 };
 
+/// Why a motion ends.
+enum class Ending {
+  Complete,
+  NotFinite,          ///< the next step would not be
+  EnergyFromNothing,  ///< it would have twice the energy that start and loads can have given
+};
+std::string_view to_string(Ending ending);  ///< "complete", "not-finite", "energy-from-nothing"
+
 struct Simulation {
   Index unknowns = 0;
-  std::vector<StepRecord> steps;  ///< the first is the start; ends early with a NotFinite one
-  RowMatrix tracked;              ///< one row a step: displacements of the scene's tracked nodes [m]
-  std::vector<double> times;      ///< of the frames [s]
+  std::vector<StepRecord> steps;  ///< the first is the start; where it ends early, the last repeats the one before
+  Ending ending = Ending::Complete;
+  EnergyBalance refused;      ///< energies of the step that was not taken, where it would have had too much
+  RowMatrix tracked;          ///< one row a step: displacements of the scene's tracked nodes [m]
+  std::vector<double> times;  ///< of the frames [s]
   /// Frames × coordinates: reduced coordinates, or displacements [m] and velocities [m/s] of all nodes.
   RowMatrix u, v;
   std::vector<ErrorRecord> errors;  ///< of a reduced model that has an indicator, every fourth step
@@ -56,14 +69,22 @@ struct Simulation {
   double integration_seconds = 0;   ///< the steps alone
   double estimate_seconds = 0;      ///< the estimates of the error alone
 
+  Index halved_steps = 0;  ///< steps that were taken in parts
+
   Index num_steps() const { return static_cast<Index>(steps.size()) - 1; }
-  bool finite() const { return steps.back().status != Status::NotFinite; }
+  bool complete() const { return ending == Ending::Complete; }
+  const StepRecord& last_good() const { return steps[steps.size() - (complete() ? 1 : 2)]; }
 };
+
+/// What ended it, with the step and what may help. \pre it is not complete.
+std::string reason_to_end(const Simulation& run, const SimulationOptions& options);
 
 /// What the steps took, all together.
 struct Effort {
   double mean_iterations = 0, worst_residual = 0, steps_per_second = 0;
   Index most_iterations = 0, refreshes = 0, missed = 0;
+  /// The most energy that the integrator has made (> 0) and taken (< 0) at any time, over EnergyBalance::turnover.
+  double energy_made = 0, energy_taken = 0;
 
   explicit Effort(const Simulation& run);
 };

@@ -16,6 +16,7 @@ class AnyObjective {
   virtual double value(VectorIn u) = 0;
   virtual void gradient(VectorIn u, VectorOut g) = 0;
   virtual void hessian(VectorIn u, MatrixType& H) = 0;
+  virtual void rest_hessian(MatrixType& H) = 0;
   virtual double scale(VectorIn u) = 0;
   virtual const Vector& metric() const = 0;
   virtual BlockRotations frames(VectorIn u) const = 0;
@@ -33,6 +34,7 @@ class ErasedObjective final : public AnyObjective<typename O::MatrixType> {
   double value(VectorIn u) override { return own_.value(u); }
   void gradient(VectorIn u, VectorOut g) override { own_.gradient(u, g); }
   void hessian(VectorIn u, typename O::MatrixType& H) override { own_.hessian(u, H); }
+  void rest_hessian(typename O::MatrixType& H) override { supple::rest_hessian(own_, H); }
   double scale(VectorIn u) override { return own_.scale(u); }
   const Vector& metric() const override { return own_.metric(); }
   BlockRotations frames(VectorIn u) const override { return frames_of(own_, u); }

@@ -20,7 +20,19 @@ class ShiftedHessian {
   template <SmoothObjective O>
   bool factorize(O& objective, SpdSolver<MatrixType>& solver, VectorIn u) {
     objective.hessian(u, H_);
-    const Vector& metric = objective.metric();
+    return factorize(objective.metric(), solver);
+  }
+  /// The same at rest.
+  template <SmoothObjective O>
+  bool factorize_at_rest(O& objective, SpdSolver<MatrixType>& solver) {
+    rest_hessian(objective, H_);
+    return factorize(objective.metric(), solver);
+  }
+  const MatrixType& matrix() const { return H_; }    ///< as it was factorised
+  bool was_definite() const { return shift_ == 0; }  ///< whether it needed no shift
+
+ private:
+  bool factorize(const Vector& metric, SpdSolver<MatrixType>& solver) {
     const double unit = H_.norm() / metric.norm();
     shift_ = 0;
     while (!solver.factorize(H_)) {
@@ -33,10 +45,6 @@ class ShiftedHessian {
     if (shift_ > 0) last_shift_ = shift_;
     return true;
   }
-  const MatrixType& matrix() const { return H_; }    ///< as it was factorised
-  bool was_definite() const { return shift_ == 0; }  ///< whether it needed no shift
-
- private:
   MatrixType H_;
   double shift_ = 0, last_shift_ = 0;  // over ‖H‖ / ‖metric‖
 };

@@ -47,6 +47,15 @@ concept SmoothEquation = requires(E& equation, VectorIn u, VectorOut r, typename
   { equation.scale(u) } -> std::convertible_to<double>;  // valid for the u of the last call of residual
 };
 
+/// The Hessian at rest: H(0), unless an objective tells by `rest_hessian(H)` that rest is something else.
+template <SmoothObjective O>
+void rest_hessian(O& objective, typename O::MatrixType& H) {
+  if constexpr (requires { objective.rest_hessian(H); })
+    objective.rest_hessian(H);
+  else
+    objective.hessian(Vector::Zero(objective.metric().size()), H);
+}
+
 /// When a solve ends.
 struct SolveLimits {
   double tolerance = 1e-6;    ///< relative residual ‖g‖ / scale to reach

@@ -3,6 +3,7 @@
 
 #include <numerics/linear/block_rotations.hpp>
 #include <physics/system/dynamical_system.hpp>
+#include <physics/system/mean_force.hpp>
 
 #include <memory>
 #include <utility>
@@ -37,6 +38,9 @@ class AnySystem {
   double energy(VectorIn u) const { return system_->energy(u); }                  ///< [J]
   void force(VectorIn u, VectorOut f) const { system_->force(u, f); }             ///< [N]
   void stiffness(VectorIn u, MatrixType& K) const { system_->stiffness(u, K); }   ///< [N/m]
+  /// \see supple::mean_force
+  void mean_force(VectorIn u_0, VectorIn u_1, VectorOut f) const { system_->mean_force(u_0, u_1, f); }
+  void mean_stiffness(VectorIn u_0, VectorIn u_1, MatrixType& K) const { system_->mean_stiffness(u_0, u_1, K); }
   Vector force(VectorIn u) const {
     Vector f(dim());
     force(u, f);
@@ -68,6 +72,8 @@ class AnySystem {
     virtual double energy(VectorIn u) const = 0;
     virtual void force(VectorIn u, VectorOut f) const = 0;
     virtual void stiffness(VectorIn u, MatrixType& K) const = 0;
+    virtual void mean_force(VectorIn u_0, VectorIn u_1, VectorOut f) const = 0;
+    virtual void mean_stiffness(VectorIn u_0, VectorIn u_1, MatrixType& K) const = 0;
     virtual SystemLoad<MatrixType> project(const Loads& loads) const = 0;
     virtual Index num_nodes() const = 0;
     virtual Vector expand(VectorIn u) const = 0;
@@ -84,6 +90,10 @@ class AnySystem {
     double energy(VectorIn u) const override { return own_->energy(u); }
     void force(VectorIn u, VectorOut f) const override { own_->force(u, f); }
     void stiffness(VectorIn u, MatrixType& K) const override { own_->stiffness(u, K); }
+    void mean_force(VectorIn u_0, VectorIn u_1, VectorOut f) const override { supple::mean_force(*own_, u_0, u_1, f); }
+    void mean_stiffness(VectorIn u_0, VectorIn u_1, MatrixType& K) const override {
+      supple::mean_stiffness(*own_, u_0, u_1, K);
+    }
     SystemLoad<MatrixType> project(const Loads& loads) const override { return own_->project(loads); }
     Index num_nodes() const override { return own_->num_nodes(); }
     Vector expand(VectorIn u) const override { return own_->expand(u); }

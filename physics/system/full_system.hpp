@@ -7,6 +7,7 @@
 #include <physics/model/explain_force_model.hpp>
 #include <physics/model/term_pack.hpp>
 #include <physics/system/dynamical_system.hpp>
+#include <physics/system/mean_force.hpp>
 #include <physics/system/nodal_frames.hpp>
 #include <physics/system/node_numbering.hpp>
 #include <physics/system/outside_terms.hpp>
@@ -105,29 +106,21 @@ class FullSystem {
   void full_force(VectorIn u, VectorOut f) const {
     require_size("u", u.size(), num_nodes() * node_dim);
     require_size("f", f.size(), num_nodes() * node_dim);
-    // one buffer a calling thread, kept: a fresh one would cost as much in page faults as the arithmetic
-    static thread_local std::vector<Pack> buffer;
-    buffer.resize(packs_.size() * Model::local_dofs);
-    Pack* const local = buffer.data();
-    parallel_for(num_chunks(), [&](Index chunk) {
-      for_packs(chunk, [&](Index p, int) {
-        const auto f_p = packs_[p].force(gather(u, p));
-        std::copy_n(f_p.data(), Model::local_dofs, local + p * Model::local_dofs);
-      });
+    sum_forces(f, [&](Index p) { return packs_[p].force(gather(u, p)); });
+  }
+
+  /// \see supple::mean_force
+  void mean_force(VectorIn u_0, VectorIn u_1, VectorOut f) const {
+    require_size("f", f.size(), dim());
+    const Vector full_0 = expand(u_0), way = expand(u_1 - u_0);
+    Vector full(num_nodes() * node_dim);
+    sum_forces(full, [&](Index p) {
+      const LocalField u = gather(full_0, p), du = gather(way, p);
+      LocalField f_p = packs_[p].force(u + Pack(gauss_points[0]) * du);
+      f_p += packs_[p].force(u + Pack(gauss_points[1]) * du);
+      return LocalField(Pack(0.5) * f_p);
     });
-    const double* const values = reinterpret_cast<const double*>(local);
-    parallel_ranges(num_nodes(), 4096, [&](Index begin, Index end) {
-      for (Index v = begin; v < end; ++v) {
-        Local<node_dim> sum = Local<node_dim>::Zero();
-        for (const Index slot : incidence_.of(v)) {  // slot = component · stencil_size + corner
-          const Index i = slot / Model::stencil_size, corner = slot % Model::stencil_size;
-          const double* at =
-              values + ((i / Pack::size) * Model::local_dofs + corner * node_dim) * Pack::size + i % Pack::size;
-          for (int c = 0; c < node_dim; ++c) sum[c] += at[c * Pack::size];
-        }
-        f.template segment<node_dim>(v * node_dim) = sum;
-      }
-    });
+    f = restrict(full);
   }
 
   /// Forces in many states, a column each, dim × k. Eight states at a time go through a component together, whose numbers
@@ -143,32 +136,23 @@ class FullSystem {
   /// yet.
   void stiffness(VectorIn u, SparseMatrix& K) const {
     const Vector full = expand(u);
-    if (K.rows() != dim() || K.nonZeros() != pattern_.num_nonzeros()) K = pattern_.zero_matrix();
-    double* const values = K.valuePtr();
-    std::fill_n(values, K.nonZeros(), 0.0);
-    constexpr Index local_size = Model::local_dofs * Model::local_dofs;
-    constexpr Index chunks_at_once = 16;  // bounds the buffer, whatever the size of the mesh
-    std::vector<Pack> buffer(std::min(chunks_at_once, num_chunks()) * packs_per_chunk * local_size);
-    const int owners = num_threads();
-    for (Index first = 0; first < num_chunks(); first += chunks_at_once) {
-      const Index last = std::min(num_chunks(), first + chunks_at_once);
-      parallel_for(last - first, [&](Index c) {
-        for_packs(first + c, [&](Index p, int) {
-          const auto K_p = packs_[p].stiffness(gather(full, p));
-          std::copy_n(K_p.data(), local_size, buffer.data() + (p - first * packs_per_chunk) * local_size);
-        });
-      });
-      const Index begin = first * packs_per_chunk * Pack::size;
-      const Index end = std::min<Index>(model_->num_components(), last * packs_per_chunk * Pack::size);
-      parallel_for(owners, [&](Index owner) {  // each adds to its own columns, in order of components
-        pattern_.scatter(owner, owners, begin, end, reinterpret_cast<const double*>(buffer.data()), values);
-      });
-    }
+    sum_tangents(K, [&](Index p) { return packs_[p].stiffness(gather(full, p)); });
   }
   SparseMatrix stiffness(VectorIn u) const {
     SparseMatrix K = pattern_.zero_matrix();
     stiffness(u, K);
     return K;
+  }
+  /// \see supple::mean_stiffness
+  void mean_stiffness(VectorIn u_0, VectorIn u_1, SparseMatrix& K) const {
+    const Vector full_0 = expand(u_0), way = expand(u_1 - u_0);
+    sum_tangents(K, [&](Index p) {
+      const LocalField u = gather(full_0, p), du = gather(way, p);
+      LocalMatrix<Model::local_dofs, Pack> K_p =
+          Pack(0.5 * gauss_points[0]) * packs_[p].stiffness(u + Pack(gauss_points[0]) * du);
+      K_p += Pack(0.5 * gauss_points[1]) * packs_[p].stiffness(u + Pack(gauss_points[1]) * du);
+      return K_p;
+    });
   }
   const SparseMatrix& rest_stiffness() const { return rest_stiffness_; }
 
@@ -239,6 +223,62 @@ class FullSystem {
     const Index end = std::min<Index>(packs_.size(), (chunk + 1) * packs_per_chunk);
     for (Index p = chunk * packs_per_chunk; p < end; ++p)
       body(p, static_cast<int>(std::min<Index>(Pack::size, model_->num_components() - p * Pack::size)));
+  }
+
+  using LocalField = Local<Model::local_dofs, Pack>;
+
+  /// f = Σᵢ fᵢ on all nodes. \param force_of  pack of components → their forces.
+  template <typename ForceOf>
+  void sum_forces(VectorOut f, const ForceOf& force_of) const {
+    // one buffer a calling thread, kept: a fresh one would cost as much in page faults as the arithmetic
+    static thread_local std::vector<Pack> buffer;
+    buffer.resize(packs_.size() * Model::local_dofs);
+    Pack* const local = buffer.data();
+    parallel_for(num_chunks(), [&](Index chunk) {
+      for_packs(chunk, [&](Index p, int) {
+        const LocalField f_p = force_of(p);
+        std::copy_n(f_p.data(), Model::local_dofs, local + p * Model::local_dofs);
+      });
+    });
+    const double* const values = reinterpret_cast<const double*>(local);
+    parallel_ranges(num_nodes(), 4096, [&](Index begin, Index end) {
+      for (Index v = begin; v < end; ++v) {
+        Local<node_dim> sum = Local<node_dim>::Zero();
+        for (const Index slot : incidence_.of(v)) {  // slot = component · stencil_size + corner
+          const Index i = slot / Model::stencil_size, corner = slot % Model::stencil_size;
+          const double* at =
+              values + ((i / Pack::size) * Model::local_dofs + corner * node_dim) * Pack::size + i % Pack::size;
+          for (int c = 0; c < node_dim; ++c) sum[c] += at[c * Pack::size];
+        }
+        f.template segment<node_dim>(v * node_dim) = sum;
+      }
+    });
+  }
+
+  /// K = Σᵢ Kᵢ. \param tangent_of  pack of components → their Kᵢ.
+  template <typename TangentOf>
+  void sum_tangents(SparseMatrix& K, const TangentOf& tangent_of) const {
+    if (K.rows() != dim() || K.nonZeros() != pattern_.num_nonzeros()) K = pattern_.zero_matrix();
+    double* const values = K.valuePtr();
+    std::fill_n(values, K.nonZeros(), 0.0);
+    constexpr Index local_size = Model::local_dofs * Model::local_dofs;
+    constexpr Index chunks_at_once = 16;  // bounds the buffer, whatever the size of the mesh
+    std::vector<Pack> buffer(std::min(chunks_at_once, num_chunks()) * packs_per_chunk * local_size);
+    const int owners = num_threads();
+    for (Index first = 0; first < num_chunks(); first += chunks_at_once) {
+      const Index last = std::min(num_chunks(), first + chunks_at_once);
+      parallel_for(last - first, [&](Index c) {
+        for_packs(first + c, [&](Index p, int) {
+          const LocalMatrix<Model::local_dofs, Pack> K_p = tangent_of(p);
+          std::copy_n(K_p.data(), local_size, buffer.data() + (p - first * packs_per_chunk) * local_size);
+        });
+      });
+      const Index begin = first * packs_per_chunk * Pack::size;
+      const Index end = std::min<Index>(model_->num_components(), last * packs_per_chunk * Pack::size);
+      parallel_for(owners, [&](Index owner) {  // each adds to its own columns, in order of components
+        pattern_.scatter(owner, owners, begin, end, reinterpret_cast<const double*>(buffer.data()), values);
+      });
+    }
   }
 
   template <bool with_energies>

@@ -20,11 +20,32 @@ struct StepOptions {
   Index max_iterations = 60;  ///< of the nonlinear solver in a step
 };
 
+/// Elastic forces and the pull of a load, where a step ends up: at u.
+template <DynamicalSystem System>
+struct ForcesAtOnce {
+  using MatrixType = typename System::MatrixType;
+
+  const System& system;
+  const SystemLoad<MatrixType>* load = nullptr;
+
+  double energy(VectorIn u) const { return system.energy(u) + load->pull_energy(u); }
+  void force(VectorIn u, VectorOut f) const {
+    system.force(u, f);
+    load->add_pull(u, f);
+  }
+  void stiffness(VectorIn u, MatrixType& K) const {
+    system.stiffness(u, K);
+    load->add_stiffness(u, K);
+  }
+  void rest_stiffness(MatrixType& K) const { stiffness(Vector::Zero(system.dim()), K); }
+};
+
 /// M a + D v + f(u) = f_ext for accelerations and velocities that are affine in the unknown u, a = c_m (u − ũ_m) and
 /// v = ṽ + c_d (u − ũ_d), as a smooth objective:
 ///   φ(u) = ½ c_m ‖u − ũ_m‖²_M + ½ c_d ‖u − ũ_d‖²_D + ṽᵀ D u + E(u) + ½ uᵀ k u − f_extᵀ u.
 /// So a step is the minimiser of an incremental potential, and Newton's line search is safe.
-template <DynamicalSystem System>
+/// \tparam Forces  what of the object's forces and the load's pull a step balances: ForcesAtOnce, or MeanForces.
+template <DynamicalSystem System, typename Forces = ForcesAtOnce<System>>
 class StepObjective {
  public:
   using MatrixType = typename System::MatrixType;
@@ -32,6 +53,7 @@ class StepObjective {
   /// \param system  must outlive the objective.
   StepObjective(const System& system, const StepOptions& options, double c_m, double c_d)
       : system_(system),
+        forces_{system},
         damping_(options.damping),
         tolerance_(options.tolerance),
         c_m_(c_m),
@@ -39,9 +61,11 @@ class StepObjective {
         rounding_(8 * std::numeric_limits<double>::epsilon() *
                   (c_m_ * system.mass() + system.rest_stiffness().diagonal())) {}
 
+  Forces& forces() { return forces_; }
+
   /// Where the step comes from. \param load  must stay during the solve.
   void begin(const SystemLoad<MatrixType>& load, Vector u_m, Vector u_d, VectorIn v_tilde) {
-    load_ = &load;
+    load_ = forces_.load = &load;
     u_m_ = std::move(u_m);
     if (!damped()) return;
     u_d_ = std::move(u_d);
@@ -53,13 +77,11 @@ class StepObjective {
   bool has_value() const { return load_->has_potential(); }
   double value(VectorIn u) const {
     const Vector du = u - u_m_;
-    double phi = 0.5 * c_m_ * du.dot(system_.mass().cwiseProduct(du)) + system_.energy(u) - load_->force.dot(u);
-    if (damped()) phi += damping_value(u);
-    return phi + load_->pull_energy(u);
+    const double phi = 0.5 * c_m_ * du.dot(system_.mass().cwiseProduct(du)) + forces_.energy(u) - load_->force.dot(u);
+    return damped() ? phi + damping_value(u) : phi;
   }
   void gradient(VectorIn u, VectorOut g) {
-    system_.force(u, g);
-    load_->add_pull(u, g);
+    forces_.force(u, g);
     scale_ = std::max(g.norm(), load_->force.norm());
     const Vector inertia = c_m_ * system_.mass().cwiseProduct(u - u_m_);
     scale_ = std::max({scale_, inertia.norm(), rounding_.cwiseProduct(u).norm() / tolerance_});
@@ -70,10 +92,12 @@ class StepObjective {
     g += damping;
   }
   void hessian(VectorIn u, MatrixType& H) const {
-    system_.stiffness(u, H);
-    if (damping_.beta != 0) add_scaled(H, c_d_ * damping_.beta, system_.rest_stiffness());
-    add_diagonal(H, (c_m_ + c_d_ * damping_.alpha) * system_.mass());
-    load_->add_stiffness(u, H);
+    forces_.stiffness(u, H);
+    add_inertia(H);
+  }
+  void rest_hessian(MatrixType& H) const {
+    forces_.rest_stiffness(H);
+    add_inertia(H);
   }
   double scale(VectorIn) const { return scale_; }
   const Vector& metric() const { return system_.mass(); }
@@ -88,12 +112,17 @@ class StepObjective {
   }
 
  private:
+  void add_inertia(MatrixType& H) const {
+    if (damping_.beta != 0) add_scaled(H, c_d_ * damping_.beta, system_.rest_stiffness());
+    add_diagonal(H, (c_m_ + c_d_ * damping_.alpha) * system_.mass());
+  }
   double damping_value(VectorIn u) const {
     const Vector du = u - u_d_;
     return 0.5 * c_d_ * du.dot(damp(du)) + damping_force_.dot(u);
   }
 
   const System& system_;
+  Forces forces_;
   RayleighDamping damping_;
   double tolerance_, c_m_, c_d_;
   Vector rounding_;  // of the forces, relative to the displacements
@@ -104,7 +133,7 @@ class StepObjective {
 
 /// What integrators of second order that solve one StepObjective a step have in common: checks, balance, energies and the
 /// nonlinear solver. The integrator itself says where a step comes from and where its solution leads.
-template <DynamicalSystem System>
+template <DynamicalSystem System, typename Forces = ForcesAtOnce<System>>
 class ImplicitIntegrator {
  public:
   using MatrixType = typename System::MatrixType;
@@ -121,6 +150,7 @@ class ImplicitIntegrator {
     load.add_pull(state.u, r);
     if (objective_.damped()) r += objective_.damp(state.v);
     state.a = (load.force - r).cwiseQuotient(system_.mass());
+    state.before.reset();
   }
 
   /// Kinetic plus elastic energy [J].
@@ -162,7 +192,7 @@ class ImplicitIntegrator {
   const System& system_;
   const double h_;
   StepOptions options_;
-  StepObjective<System> objective_;
+  StepObjective<System, Forces> objective_;
 
  private:
   WarmSolver<MatrixType> solver_;

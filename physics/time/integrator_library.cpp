@@ -1,3 +1,5 @@
+#include <physics/time/average_vector_field.hpp>
+#include <physics/time/backward_difference.hpp>
 #include <physics/time/generalized_alpha.hpp>
 #include <physics/time/integrator_library.hpp>
 #include <physics/time/newmark.hpp>
@@ -34,7 +36,10 @@ void check_integrator(const Choice& choice) {
 Registry<NamedIntegrator>& integrators() {
   static Registry<NamedIntegrator> all(
       "integrator",
-      {named_integrator<Newmark>(
+      {named_integrator<AverageVectorField>("average-vector-field",
+                                            "second order, keeps the energy of large deformations",
+                                            OptionsOf<AverageVectorFieldParameters>()),
+       named_integrator<Newmark>(
            "newmark", "Newmark's family; as it stands, average acceleration",
            OptionsOf<NewmarkParameters>()
                .add("beta", &NewmarkParameters::beta, "share of the acceleration at the end of a step in displacements")
@@ -43,7 +48,12 @@ Registry<NamedIntegrator>& integrators() {
        named_integrator<GeneralizedAlpha>(
            "generalized-alpha", "second order, and what is too fast for the step dies out",
            OptionsOf<GeneralizedAlphaParameters>().add("rho_infinity", &GeneralizedAlphaParameters::rho_infinity,
-                                                       "what a step leaves of infinitely fast motions, 0 to 1"))});
+                                                       "what a step leaves of infinitely fast motions, 0 to 1")),
+       named_integrator<TrBdf2>("tr-bdf2", "second order, damps what is fast for good; two solves a step",
+                                OptionsOf<BackwardDifferenceParameters>()),
+       named_integrator<Bdf2>("bdf2", "second order, damps more", OptionsOf<BackwardDifferenceParameters>()),
+       named_integrator<BackwardEuler>("backward-euler", "first order, damps most: the calmest",
+                                       OptionsOf<BackwardDifferenceParameters>())});
   return all;
 }
 

@@ -45,7 +45,8 @@ NamedIntegrator named_integrator(std::string name, std::string description, Opti
   return {name, std::move(description), options.info(), make, make};
 }
 
-/// All integrators by name, the default first: "newmark", "generalized-alpha" and what was added.
+/// All integrators by name, the default first: "average-vector-field", "newmark", "generalized-alpha", "tr-bdf2", "bdf2",
+/// "backward-euler" and what was added.
 Registry<NamedIntegrator>& integrators();
 
 /// An integrator as a user chooses it, "generalized-alpha:rho_infinity=0.9", of steps of h [s].

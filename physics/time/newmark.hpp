@@ -6,7 +6,8 @@
 namespace supple {
 
 struct NewmarkParameters {
-  double beta = 0.25, gamma = 0.5;  ///< average acceleration; γ > ½, β = ¼ (γ + ½)² damps, at first order
+  /// Average acceleration; γ > ½, β = ¼ (γ + ½)² damps, at first order. γ ≥ ½; where 2 β < γ, steps must stay short.
+  double beta = 0.25, gamma = 0.5;
 };
 
 /// Advances M ü + D u̇ + f(u) = f_ext by the Newmark family (Newmark 1959; Hughes 2000, Sec. 9.1):
@@ -28,12 +29,15 @@ class Newmark : public ImplicitIntegrator<System> {
                                    parameters.gamma / (parameters.beta * h)),
         beta_(parameters.beta),
         gamma_(parameters.gamma) {
-    require(beta_ > 0 && gamma_ > 0, "Newmark's beta and gamma have to be > 0 (implicit)");
+    require(beta_ > 0, "Newmark's beta is " + std::to_string(beta_) + ", expected > 0 (implicit)");
+    require(gamma_ >= 0.5, "Newmark's gamma is " + std::to_string(gamma_) +
+                               ", expected at least 0.5: below, every motion grows, however short the step");
   }
   Newmark(const System&&, double, const StepOptions& = {}, const NewmarkParameters& = {}) = delete;  // it would dangle
 
   int order() const { return gamma_ == 0.5 ? 2 : 1; }
   EnergyBehaviour energy_behaviour() const {
+    if (2 * beta_ < gamma_) return EnergyBehaviour::BoundedForShortSteps;
     return beta_ == 0.25 && gamma_ == 0.5 ? EnergyBehaviour::Conserved : EnergyBehaviour::Bounded;
   }
 

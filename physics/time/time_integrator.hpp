@@ -11,9 +11,10 @@ namespace supple {
 
 /// What becomes of the energy of an undamped linear oscillator.
 enum class EnergyBehaviour {
-  Conserved,  ///< kinetic plus elastic energy stays, for any step
-  Falls,      ///< it never rises from one step to the next, for any step
-  Bounded,    ///< it swings or falls, and neither is promised
+  Conserved,             ///< kinetic plus elastic energy stays, for any step
+  Falls,                 ///< it never rises from one step to the next, for any step
+  Bounded,               ///< it swings or falls, and neither is promised
+  BoundedForShortSteps,  ///< and grows without bound where steps are long against the fastest motion
 };
 
 /// An object that advances a system by steps of one length. A state has displacements `u` and a `time`, and what else

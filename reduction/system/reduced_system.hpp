@@ -51,6 +51,9 @@ class ReducedSystem {
   Vector force(VectorIn q) const { return components_.force(q); }
   void stiffness(VectorIn q, Matrix& K) const { components_.stiffness(q, K); }
   Matrix stiffness(VectorIn q) const { return components_.stiffness(q); }
+  /// \see supple::mean_force
+  void mean_force(VectorIn q_0, VectorIn q_1, VectorOut f) const { components_.mean_force(q_0, q_1, f); }
+  void mean_stiffness(VectorIn q_0, VectorIn q_1, Matrix& K) const { components_.mean_stiffness(q_0, q_1, K); }
 
   /// Forces on all nodes, n · node_dim → on the unknowns.
   SystemLoad<Matrix> project(VectorIn nodal_forces) const { return {subspace_->project(nodal_forces), {}}; }

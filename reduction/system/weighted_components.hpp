@@ -4,8 +4,10 @@
 #include <core/check.hpp>
 #include <core/single_pack.hpp>
 #include <physics/model/term_pack.hpp>
+#include <physics/system/mean_force.hpp>
 #include <reduction/system/row_precision.hpp>
 
+#include <array>
 #include <memory>
 #include <span>
 #include <variant>
@@ -83,13 +85,63 @@ class WeightedComponents {
 
   void force(VectorIn q, VectorOut f) const {
     require_size("q", q.size(), dim());
+    sum_forces(f, [&](std::size_t c, const auto* E) { return terms_[c].force(gather(E, q.data())); });
+  }
+  Vector force(VectorIn q) const {
+    Vector f(dim());
+    force(q, f);
+    return f;
+  }
+
+  /// \see supple::mean_force. The rows of W are read as often as for one force.
+  void mean_force(VectorIn q_0, VectorIn q_1, VectorOut f) const {
+    require_size("q_0", q_0.size(), dim());
+    require_size("q_1", q_1.size(), dim());
+    sum_forces(f, [&](std::size_t c, const auto* E) {
+      const auto [u, du] = gather_way(E, q_0.data(), q_1.data());
+      Local<Model::local_dofs, Pack> f_c = terms_[c].force(u + Pack(gauss_points[0]) * du);
+      f_c += terms_[c].force(u + Pack(gauss_points[1]) * du);
+      return Local<Model::local_dofs, Pack>(Pack(0.5) * f_c);
+    });
+  }
+
+  /// K̃ = Σ wᵢ Dᵢᵀ Kᵢ Dᵢ.
+  void stiffness(VectorIn q, Matrix& K) const {
+    require_size("q", q.size(), dim());
+    project_tangents(K, [&](std::size_t c, const auto* E) { return terms_[c].stiffness(gather(E, q.data())); });
+  }
+  Matrix stiffness(VectorIn q) const {
+    Matrix K;
+    stiffness(q, K);
+    return K;
+  }
+
+  /// \see supple::mean_stiffness
+  void mean_stiffness(VectorIn q_0, VectorIn q_1, Matrix& K) const {
+    require_size("q_0", q_0.size(), dim());
+    require_size("q_1", q_1.size(), dim());
+    project_tangents(K, [&](std::size_t c, const auto* E) {
+      const auto [u, du] = gather_way(E, q_0.data(), q_1.data());
+      LocalMatrix<Model::local_dofs, Pack> K_c =
+          Pack(0.5 * gauss_points[0]) * terms_[c].stiffness(u + Pack(gauss_points[0]) * du);
+      K_c += Pack(0.5 * gauss_points[1]) * terms_[c].stiffness(u + Pack(gauss_points[1]) * du);
+      return K_c;
+    });
+  }
+
+ private:
+  using LocalField = Local<Model::local_dofs, Pack>;
+
+  /// f = Σ wᵢ Dᵢᵀ fᵢ. \param force_of  (pack of components, the rows of W behind it) → their forces.
+  template <typename ForceOf>
+  void sum_forces(VectorOut f, const ForceOf& force_of) const {
     require_size("f", f.size(), dim());
     const Index p = num_fields_;
     std::vector<Pack> sums(dim(), Pack(0.0));
     with_rows([&](const auto& rows_of) {
       for (std::size_t c = 0; c < terms_.size(); ++c) {
         const auto* E = rows_of(c);
-        Local<Model::local_dofs, Pack> f_c = terms_[c].force(gather(E, q.data()));
+        LocalField f_c = force_of(c, E);
         for (int i = first_dof; i < Model::local_dofs; ++i) f_c[i] *= weights_[c];
         Pack* sum = sums.data();
         for (Index a = 0; a < p; ++a, E += rows, sum += block)
@@ -102,15 +154,11 @@ class WeightedComponents {
     });
     for (Index k = 0; k < dim(); ++k) f[k] = sums[k].sum();
   }
-  Vector force(VectorIn q) const {
-    Vector f(dim());
-    force(q, f);
-    return f;
-  }
 
-  /// K̃ = Σ wᵢ Dᵢᵀ Kᵢ Dᵢ by products of all rows of W at once, one for each pair of axes (x ≤ y if it is symmetric).
-  void stiffness(VectorIn q, Matrix& K) const {
-    require_size("q", q.size(), dim());
+  /// Σ wᵢ Dᵢᵀ Kᵢ Dᵢ by products of all rows of W at once, one for each pair of axes (x ≤ y if it is symmetric).
+  /// \param tangent_of  (pack of components, the rows of W behind it) → their Kᵢ.
+  template <typename TangentOf>
+  void project_tangents(Matrix& K, const TangentOf& tangent_of) const {
     const Index p = num_fields_;
     constexpr int pairs = symmetric_tangent ? block * (block + 1) / 2 : block * block;
     constexpr Index packs_at_once = 8;  // their rows and products stay in the cache
@@ -122,7 +170,7 @@ class WeightedComponents {
         const Index count = std::min<Index>(packs_at_once, static_cast<Index>(terms_.size()) - first);
         for (Index c = 0; c < count; ++c) {
           const auto* E = rows_of(first + c);
-          const LocalMatrix<Model::local_dofs, Pack> K_c = terms_[first + c].stiffness(gather(E, q.data()));
+          const LocalMatrix<Model::local_dofs, Pack> K_c = tangent_of(first + c, E);
           const Pack weight = weights_[first + c];
           LocalMatrix<local, Pack> weighted;
           for (int j = 0; j < local; ++j)
@@ -156,13 +204,6 @@ class WeightedComponents {
             if constexpr (symmetric_tangent) K(b * block + y, a * block + x) = sums(a, pair * p + b);
           }
   }
-  Matrix stiffness(VectorIn q) const {
-    Matrix K;
-    stiffness(q, K);
-    return K;
-  }
-
- private:
   /// Calls loop(rows_of), where rows_of(c) points to the rows of W behind pack c, in the precision they are kept in.
   template <typename Loop>
   void with_rows(const Loop& loop) const {
@@ -181,6 +222,20 @@ class WeightedComponents {
     for (int i = 0; i < first_dof; ++i) u[i] = Pack(0.0);
     for (int i = 0; i < local; ++i) u[first_dof + i] = active[i];
     return u;
+  }
+  /// The same of the start of a straight way, and of the way itself.
+  template <typename Rows>
+  std::array<LocalField, 2> gather_way(const Rows* E, const double* q_0, const double* q_1) const {
+    std::array<LocalField, 2> way;
+    for (LocalField& u : way) u.setConstant(Pack(0.0));
+    const Index p = num_fields_;
+    for (Index a = 0; a < p; ++a, E += rows, q_0 += block, q_1 += block)
+      for (int r = 0; r < rows; ++r)
+        for (int x = 0; x < block; ++x) {
+          way[0][first_dof + r * block + x] += Pack(E[r]) * Pack(q_0[x]);
+          way[1][first_dof + r * block + x] += Pack(E[r]) * Pack(q_1[x] - q_0[x]);
+        }
+    return way;
   }
 
   Index num_fields_;

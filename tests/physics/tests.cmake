@@ -8,7 +8,8 @@ supple_test(physics LABEL unit LINKS supple::physics
           physics/system/nodal_frames_test.cpp
           physics/time/newmark_test.cpp physics/statics/static_solver_test.cpp)
 supple_test(any_system LABEL unit LINKS supple::reduction SOURCES physics/system/any_system_test.cpp)
-supple_test(time_integrators OPTIMIZED LABEL unit LINKS supple::physics SOURCES physics/time/time_integrator_test.cpp)
+supple_test(time_integrators OPTIMIZED LABEL unit LINKS supple::physics
+  SOURCES physics/time/energy_test.cpp physics/time/time_integrator_test.cpp)
 supple_test(outside_forces LABEL unit LINKS supple::reduction SOURCES physics/load/outside_force_test.cpp)
 supple_test(shells LABEL unit LINKS supple::physics
   SOURCES physics/mesh/triangle_mesh_test.cpp physics/model/discrete_shell_test.cpp)

@@ -1,4 +1,6 @@
 #include <physics/system/any_system.hpp>
+#include <physics/time/average_vector_field.hpp>
+#include <physics/time/backward_difference.hpp>
 #include <physics/time/first_order.hpp>
 #include <physics/time/generalized_alpha.hpp>
 #include <physics/time/integrator_library.hpp>
@@ -21,6 +23,20 @@ struct DampedNewmark {
     return {system, h, {.tolerance = tolerance}, {.beta = 0.3025, .gamma = 0.6}};
   }
 };
+struct LinearAcceleration {
+  template <typename System>
+  static Newmark<System> make(const System& system, double h, double tolerance) {
+    return {system, h, {.tolerance = tolerance}, {.beta = 1.0 / 6, .gamma = 0.5}};
+  }
+};
+/// An integrator without options.
+template <template <typename> class Integrator>
+struct Plain {
+  template <typename System>
+  static Integrator<System> make(const System& system, double h, double tolerance) {
+    return {system, h, {.tolerance = tolerance}};
+  }
+};
 template <int hundredths>
 struct GeneralizedAlphaOf {
   template <typename System>
@@ -36,7 +52,8 @@ struct FirstOrder {
   }
 };
 using Integrators =
-    testing::Types<AverageAcceleration, DampedNewmark, GeneralizedAlphaOf<0>, GeneralizedAlphaOf<50>,
+    testing::Types<AverageAcceleration, DampedNewmark, LinearAcceleration, Plain<AverageVectorField>, Plain<TrBdf2>,
+                   Plain<Bdf2>, Plain<BackwardEuler>, GeneralizedAlphaOf<0>, GeneralizedAlphaOf<50>,
                    GeneralizedAlphaOf<80>, GeneralizedAlphaOf<100>, FirstOrder<FirstOrderMethod::BackwardEuler>,
                    FirstOrder<FirstOrderMethod::Trapezoidal>, FirstOrder<FirstOrderMethod::Bdf2>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(OfOurs, TimeIntegratorConformance, Integrators);
@@ -129,13 +146,19 @@ TEST(IntegratorLibrary, MakesTheIntegratorsOfTheirTypes) {
   expect_same(Newmark(*own, 0.05, options), "newmark");
   expect_same(Newmark(*own, 0.05, options, {.beta = 0.3025, .gamma = 0.6}), "newmark:beta=0.3025:gamma=0.6");
   expect_same(GeneralizedAlpha(*own, 0.05, options, {.rho_infinity = 0.5}), "generalized-alpha:rho_infinity=0.5");
+  expect_same(AverageVectorField(*own, 0.05, options), "average-vector-field");
+  expect_same(TrBdf2(*own, 0.05, options), "tr-bdf2");
+  expect_same(Bdf2(*own, 0.05, options), "bdf2");
+  expect_same(BackwardEuler(*own, 0.05, options), "backward-euler");
 }
 
 TEST(IntegratorLibrary, NamesWhatItDoesNotKnow) {
   const AnySystem<Matrix> system(std::make_shared<const OneNode>());
   const auto make = [&](const char* choice) { (void)make_integrator(Choice::parse(choice), system, 0.1, {}); };
-  EXPECT_THAT([&] { make("leapfrog"); }, ThrowsMessage<std::invalid_argument>(
-                                             AllOf(HasSubstr("leapfrog"), HasSubstr("newmark, generalized-alpha"))));
+  EXPECT_THAT([&] { make("leapfrog"); },
+              ThrowsMessage<std::invalid_argument>(
+                  AllOf(HasSubstr("leapfrog"),
+                        HasSubstr("average-vector-field, newmark, generalized-alpha, tr-bdf2, bdf2, backward-euler"))));
   EXPECT_THAT([&] { make("newmark:rho=1"); },
               ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("'rho'"), HasSubstr("beta, gamma"))));
   EXPECT_THAT([&] { make("generalized-alpha:rho_infinity=half"); },

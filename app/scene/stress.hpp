@@ -1,0 +1,47 @@
+#pragma once
+/// \file What is done to an object to see whether its simulation stays sane, and what becomes of it.
+
+#include <app/scene/simulation.hpp>
+
+#include <string>
+#include <vector>
+
+namespace supple {
+
+/// A motion far beyond what a model was made for.
+struct Hardship {
+  std::string name, description;
+  Scene scene;
+};
+
+/// Pulls to 0.1, 1 and 10 times the diagonal, by linear theory; one end pressed onto the other, pulled through it and wrung;
+/// a blow; loads that jump. Each for three periods T of the softest flexible mode; undamped.
+std::vector<Hardship> hardships(const ReducedModel& model);
+
+/// How a run went, for the reader of a table.
+enum class Verdict {
+  Sound,    ///< every step reached its tolerance, and the integrator made at most 1 % of what loads brought
+  Warned,   ///< it went on to its end, and said that one of these does not hold
+  Stopped,  ///< it ended early, and said so
+};
+std::string_view to_string(Verdict verdict);
+
+/// A hardship under one integrator and step.
+struct StressRun {
+  std::string hardship, integrator;  ///< by name; as it was chosen
+  double steps_per_period = 0;
+  Index steps_asked = 0, steps_done = 0, halved = 0, missed = 0;
+  double worst_residual = 0;
+  double energy_made = 0, energy_taken = 0;  ///< see Effort
+  double reach = 0;                          ///< largest displacement of the tracked node over the diagonal
+  double seconds = 0;                        ///< of the steps
+  Ending ending = Ending::Complete;
+
+  Verdict verdict() const;
+};
+
+/// \param integrator  as a user chooses it.  \param full  runs the full object, else the model.
+StressRun endure(const ReducedModel& model, const Hardship& hardship, const std::string& integrator,
+                 double steps_per_period, bool full);
+
+}  // namespace supple
