@@ -143,7 +143,7 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   const EnergyBalance& energy = run.last_good().energy;
   json["energy"] = {{"kinetic", energy.kinetic},         {"elastic", energy.elastic}, {"work", energy.work},
                     {"damped", energy.damped},           {"made", energy.made()},     {"most_made", effort.energy_made},
-                    {"most_taken", -effort.energy_taken}};
+                    {"most_taken", effort.energy_taken}};
   if (error)
     json["indicated_error"] = {{"relative", error->relative},
                                {"worst", error->worst},
@@ -176,7 +176,7 @@ void print_summary(const SimulateCommand& command, const Scene& scene, const Sim
   if (run.halved_steps > 0) rows.emplace_back("halved steps", shown_count(run.halved_steps) + " were taken in parts");
   rows.emplace_back("energy balance", "the integrator made at most " + shown_percent(effort.energy_made) +
                                           " of what loads brought, took at most " +
-                                          shown_percent(-effort.energy_taken));
+                                          shown_percent(effort.energy_taken));
   if (error)
     rows.emplace_back("indicated error", shown_percent(error->relative) + ", at worst " + shown_percent(error->worst) +
                                              " at t = " + shown(error->worst_time, 3) + " s");

@@ -84,7 +84,11 @@ void draw_runs(const std::filesystem::path& path, const std::string& title, cons
                const std::vector<std::string>& integrators, const std::vector<double>& steps_per_period) {
   constexpr double least = 1e-5;  // percent; less is drawn there
   Plot plot{.title = title,
-            .x = {.label = "steps a period", .scale = Scale::Log, .ticks = steps_per_period},
+            .x = {.label = "steps a period",
+                  .scale = Scale::Log,
+                  .low = 0.9 * std::ranges::min(steps_per_period),
+                  .high = 1.1 * std::ranges::max(steps_per_period),
+                  .ticks = steps_per_period},
             .y = {.label = "energy made, at worst [% of what loads brought]", .scale = Scale::Log},
             .series = {}};
   for (const std::string& integrator : integrators) {

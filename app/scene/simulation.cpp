@@ -255,10 +255,13 @@ Effort::Effort(const Simulation& run) {
     most_iterations = std::max(most_iterations, step.iterations);
     refreshes += step.refreshes;
     if (std::isfinite(step.residual)) worst_residual = std::max(worst_residual, step.residual);
-    energy_made = std::max(energy_made, step.energy.made_share());
-    energy_taken = std::min(energy_taken, step.energy.made_share());
+    energy_made = std::max(energy_made, step.energy.made());
+    energy_taken = std::max(energy_taken, -step.energy.made());
     missed += step.status != Status::Converged;
   }
+  const double turnover = run.steps.back().energy.turnover;
+  energy_made = turnover > 0 ? energy_made / turnover : 0;
+  energy_taken = turnover > 0 ? energy_taken / turnover : 0;
   if (run.integration_seconds > 0) steps_per_second = static_cast<double>(run.num_steps()) / run.integration_seconds;
 }
 

@@ -83,7 +83,7 @@ std::string reason_to_end(const Simulation& run, const SimulationOptions& option
 struct Effort {
   double mean_iterations = 0, worst_residual = 0, steps_per_second = 0;
   Index most_iterations = 0, refreshes = 0, missed = 0;
-  /// The most energy that the integrator has made (> 0) and taken (< 0) at any time, over EnergyBalance::turnover.
+  /// The most energy that the integrator had made, and the most it had taken, at any time, over the turnover of the run.
   double energy_made = 0, energy_taken = 0;
 
   explicit Effort(const Simulation& run);

@@ -172,7 +172,7 @@ StressRun endure(const ReducedModel& model, const Hardship& hardship, const std:
           .missed = effort.missed,
           .worst_residual = effort.worst_residual,
           .energy_made = effort.energy_made,
-          .energy_taken = -effort.energy_taken,
+          .energy_taken = effort.energy_taken,
           .reach = run.tracked.leftCols<3>().rowwise().norm().maxCoeff() /
                    bounding_box(node_positions(model.body)).diagonal(),
           .seconds = run.integration_seconds,

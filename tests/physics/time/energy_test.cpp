@@ -1,5 +1,6 @@
 #include <physics/material/neo_hookean.hpp>
 #include <physics/mesh/mass.hpp>
+#include <physics/model/solid_elasticity.hpp>
 #include <physics/model/tet_elasticity.hpp>
 #include <physics/system/any_system.hpp>
 #include <physics/system/full_system.hpp>
@@ -178,6 +179,48 @@ TEST(AverageVectorField, KeepsLinearMomentumAndAngularMomentumToItsOrder) {
   EXPECT_LE(coarse.head<3>().norm(), 1e-9);
   EXPECT_GE(std::log2(coarse.tail<3>().norm() / fine.tail<3>().norm()), 1.7);
   EXPECT_LE(fine.tail<3>().norm(), 1e-2);
+}
+
+// A cantilever of 2 × 0.2 × 0.2 m, its end at once under a transverse traction of (50, 50) kPa: the end's largest displacement
+// and its time as computed with Abaqus, element C3D8, steps of 1 ms: 2.8007 m at 0.318 s; then 0.0176 m at 0.646 s.
+TEST(AverageVectorField, FollowsACantileverThatAbaqusComputed) {
+  TetMesh corners = kuhn_box(20, 2, 2, 0.1);
+  const QuadraticTetMesh mesh = quadratic_mesh(corners);
+  const auto at_end = [&](const Point& x) { return x[0] > 2 - 1e-9; };
+  using System = FullSystem<SolidElasticity<QuadraticTet, NeoHookean>>;
+  const System system(
+      SolidElasticity<QuadraticTet, NeoHookean>(mesh, NeoHookean<double>::from({.young = 15.293e6, .poisson = 0.3})),
+      lumped_mass<QuadraticTet>(mesh, 1000.0), nodes_where(mesh, [](const Point& x) { return x[0] < 1e-9; }));
+  const std::vector<Index> end = nodes_where(mesh, at_end);
+  Loads loads;
+  double mass = 0;
+  for (const Index i : end) mass += system.nodal_mass()[i];
+  for (const Index i : end) loads.forces.push_back({i, system.nodal_mass()[i] / mass * 0.04 * 50e3 * Point(0, 1, 1)});
+  const auto load = system.project(loads);
+  const Index tip = nodes_where(mesh, [&](const Point& x) { return at_end(x) && x[1] < 1e-9 && x[2] < 1e-9; }).front();
+  const double h = 0.003;
+  AverageVectorField integrator(system, h, {.solver = WarpedBfgs{}});
+  State state = integrator.at_rest();
+  integrator.balance(load, state);
+  double peak = 0, peak_time = 0, least = 10, least_time = 0;
+  for (int k = 1; k <= 230; ++k) {
+    ASSERT_EQ(integrator.step(load, state).status, Status::Converged) << k;
+    const double u = system.displacement(state.u, tip).norm();
+    if (u > peak) {
+      peak = u;
+      peak_time = state.time;
+      least = 10;
+    }
+    if (u < least) {
+      least = u;
+      least_time = state.time;
+    }
+  }
+  EXPECT_NEAR(peak, 2.8007, 0.015 * 2.8007);
+  EXPECT_NEAR(peak_time, 0.318, 0.01 * 0.318 + h);
+  EXPECT_NEAR(least, 0.0176, 0.015 * 2.8007);
+  EXPECT_NEAR(least_time, 0.646, 0.01 * 0.646 + h);
+  EXPECT_NEAR(energy(system, state), load.force.dot(state.u), 0.002 * load.force.dot(state.u));
 }
 
 // In linear systems the average over the way is the average of the ends.
@@ -376,12 +419,12 @@ TEST(ControlledIntegrator, HalvesStepsThatMakeEnergy) {
 
 TEST(ControlledIntegrator, ComesBackToWholeSteps) {
   const Any system = any(bar<StVenantKirchhoff>(1e4, true));
-  // a blow that no whole step follows, long over
+  // a blow that few iterations do not follow in whole steps, then calm
   auto load = system.project({.gravity = {0, 0, -1e5}});
   const auto blow = [&, none = no_load(system.dim())](double t) -> const SystemLoad<SparseMatrix>& {
     return t < 0.021 ? load : none;
   };
-  auto integrator = controlled(system, "newmark", 0.01, {.damping = {.alpha = 40, .beta = 0.01}});
+  auto integrator = controlled(system, "newmark", 0.01, {.damping = {.alpha = 40, .beta = 0.01}, .max_iterations = 5});
   State state = integrator.at_rest();
   integrator.balance(load, state);
   for (int k = 0; k < 2; ++k) (void)integrator.step(blow, state);
