@@ -204,16 +204,7 @@ class FullSystem {
         result.force.segment<3>(3 * f) += nodal_mass_[numbering_.free_nodes()[f]] * loads.gravity;
     for (const NodalForce& load : loads.forces)
       if (const Index f = numbering_.free_index(load.node); f >= 0) result.force.segment<3>(3 * f) += load.force;
-    std::vector<Eigen::Triplet<double>> diagonal;
-    for (const PointSpring& spring : loads.springs)
-      if (const Index f = numbering_.free_index(spring.node); f >= 0) {
-        result.force.segment<3>(3 * f) += spring.stiffness * spring.displacement;
-        for (int c = 0; c < 3; ++c) diagonal.emplace_back(3 * f + c, 3 * f + c, spring.stiffness);
-      }
-    if (!diagonal.empty()) {
-      result.stiffness.resize(dim(), dim());
-      result.stiffness.setFromTriplets(diagonal.begin(), diagonal.end());
-    }
+    add_springs(loads.springs, result);
     result.others = outside_terms(loads.others, numbering_);
     return result;
   }
@@ -239,6 +230,28 @@ class FullSystem {
     const Index end = std::min<Index>(packs_.size(), (chunk + 1) * packs_per_chunk);
     for (Index p = chunk * packs_per_chunk; p < end; ++p)
       body(p, static_cast<int>(std::min<Index>(Pack::size, model_->num_components() - p * Pack::size)));
+  }
+
+  void add_springs(const std::vector<PointSpring>& springs, SystemLoad<SparseMatrix>& load) const {
+    const Index count = 3 * static_cast<Index>(springs.size());
+    SystemSprings<SparseMatrix> sum{SparseMatrix(count, dim()), Vector(count), Vector(count)};
+    std::vector<Eigen::Triplet<double>> rows, diagonal;
+    for (Index row = 0; const PointSpring& spring : springs) {
+      const Index f = numbering_.free_index(spring.node);  // held nodes do not move, their rows stay empty
+      for (int c = 0; c < 3; ++c, ++row) {
+        sum.stiffness[row] = spring.stiffness;
+        sum.targets[row] = spring.displacement[c];
+        if (f < 0) continue;
+        rows.emplace_back(row, 3 * f + c, 1);
+        diagonal.emplace_back(3 * f + c, 3 * f + c, spring.stiffness);
+      }
+    }
+    if (diagonal.empty()) return;
+    sum.rows.setFromTriplets(rows.begin(), rows.end());
+    load.stiffness.resize(dim(), dim());
+    load.stiffness.setFromTriplets(diagonal.begin(), diagonal.end());
+    load.force += sum.pull_of_targets();
+    load.springs = std::move(sum);
   }
 
   template <bool with_energies>
