@@ -28,7 +28,8 @@ using ValueAndGradient = std::function<double(VectorIn u, VectorOut g)>;
 /// Improves u by NLopt until `residual(u, g)` is at most the tolerance.
 /// \param preconditioner  Cholesky factor L of a matrix close to the Hessian: NLopt then sees y = Lᵀ u, in which the
 /// Hessian is near I, the warm start that our own methods have. Empty: u itself.
-/// \return iterations are evaluations; the best iterate is kept, Stagnated if NLopt gives up before the tolerance.
+/// \return iterations are evaluations; the best iterate is kept, Stagnated if NLopt gives up before the tolerance,
+/// which it may below 1e-9: its line searches compare values.
 Report minimize_by_nlopt(const ValueAndGradient& objective,
                          const std::function<double(VectorIn u, VectorIn g)>& residual, Vector& u,
                          const NloptOptions& options = {}, const Matrix& preconditioner = {});

@@ -21,14 +21,36 @@ class OutsideTerm {
   virtual bool has_potential() const = 0;
 };
 
+/// Springs ½ Σ kᵢ (B u − t)ᵢ² in the unknowns of a system, three rows for each point that one holds. Stiff ones hold it
+/// nearly at its target, and k B u and k t nearly cancel; this knows their difference.
+template <typename MatrixType>
+struct SystemSprings {
+  MatrixType rows;   ///< B: unknowns → displacements of the points
+  Vector stiffness;  ///< k [N/m]
+  Vector targets;    ///< t [m]
+
+  bool empty() const { return targets.size() == 0; }
+  /// Bᵀ k (B u − t): minus the force on the unknowns.
+  Vector pull(VectorIn u) const { return rows.transpose() * stiffness.cwiseProduct(rows * u - targets); }
+  /// Bᵀ k t: their force at u = 0.
+  Vector pull_of_targets() const { return rows.transpose() * stiffness.cwiseProduct(targets); }
+  double energy(VectorIn u) const {
+    const Vector stretch = rows * u - targets;
+    return 0.5 * stretch.dot(stiffness.cwiseProduct(stretch));
+  }
+};
+
 /// f_ext(u) = force − stiffness u + Σ others(u), in the unknowns of a system; what is absent costs nothing. Integrators
-/// and static solvers see −f_ext as a constant part, `force`, and a pull that depends on u and counts as the forces of
-/// the object do.
+/// see −f_ext as a constant part, `force`, and a pull that depends on u and counts as the forces of the object do. Static
+/// solvers ask how much of both is springs: they tell dead forces from the net pull.
 template <typename MatrixType>
 struct SystemLoad {
   Vector force;
   MatrixType stiffness;  ///< of springs; without entries it stands for zero
   std::vector<std::shared_ptr<const OutsideTerm<MatrixType>>> others = {};
+  /// The springs whose Bᵀ k t is a part of `force` and whose Bᵀ k B is `stiffness`. Empty where nobody tells: `force` is then
+  /// all dead, and springs pull to u = 0.
+  SystemSprings<MatrixType> springs = {};
 
   bool has_stiffness() const { return stiffness.size() > 0; }
   bool has_pull() const { return has_stiffness() || !others.empty(); }
@@ -52,6 +74,25 @@ struct SystemLoad {
     for (const auto& other : others) sum += other->potential(u);
     return sum;
   }
+  /// What of `force` no spring exerts.
+  Vector dead_force() const { return springs.empty() ? force : Vector(force - springs.pull_of_targets()); }
+  /// result += what springs and others exert together, the other sign: −f_ext(u) = net pull − dead force.
+  void add_net_pull(VectorIn u, VectorOut result) const {
+    if (springs.empty()) return add_pull(u, result);
+    result += springs.pull(u);
+    for (const auto& other : others) {
+      Vector f = Vector::Zero(u.size());
+      other->add_force(u, f);
+      result -= f;
+    }
+  }
+  /// The potential of the net pull [J]: of springs, how far they are from their targets.
+  double net_pull_energy(VectorIn u) const {
+    if (springs.empty()) return pull_energy(u);
+    double sum = springs.energy(u);
+    for (const auto& other : others) sum += other->potential(u);
+    return sum;
+  }
   /// K += the derivative of the pull.
   void add_stiffness(VectorIn u, MatrixType& K) const {
     if (has_stiffness()) add_few(K, stiffness);
@@ -72,6 +113,10 @@ struct SystemLoad {
   void check(Index dim) const {
     require_size("load.force", force.size(), dim);
     if (has_stiffness()) require_size("load.stiffness", stiffness.rows(), dim);
+    if (springs.empty()) return;
+    require_size("load.springs.rows", springs.rows.cols(), dim);
+    require_size("load.springs.stiffness", springs.stiffness.size(), springs.targets.size());
+    require_size("load.springs.targets", springs.targets.size(), springs.rows.rows());
   }
 };
 

@@ -38,15 +38,13 @@ struct Fung {
 
   Real energy(const Matrix3<Real>& F) const {
     using std::exp;
-    Matrix3<Real> E = F.transpose() * F;
-    for (int i = 0; i < 3; ++i) E(i, i) -= Real(1);
-    E *= Real(0.5);
+    const Matrix3<Real> E = green_strain(F);
     const Vector3<Real> a(fibre_x, fibre_y, fibre_z), Ea = E * a;
     const Real E_ff = a[0] * Ea[0] + a[1] * Ea[1] + a[2] * Ea[2], along = E_ff * E_ff;
     const Real shear = Ea[0] * Ea[0] + Ea[1] * Ea[1] + Ea[2] * Ea[2] - along;  // E_fs² + E_fn²
     const Real Q = b_fibre * along + b_across * (E.squaredNorm() - along - Real(2) * shear) + Real(2) * b_shear * shear;
     const Real volume = determinant(F) - Real(1);
-    return Real(0.5) * c * (exp(Q) - Real(1)) + Real(0.5) * bulk * volume * volume;
+    return Real(0.5) * c * (Q + exp_beyond_linear(Q, Real(exp(Q) - Real(1)))) + Real(0.5) * bulk * volume * volume;
   }
 };
 

@@ -44,6 +44,39 @@ Matrix3<Real> cofactor(const Matrix3<Real>& F) {
   return cof;
 }
 
+/// The Green strain ½ (FᵀF − I).
+template <typename Real>
+Matrix3<Real> green_strain(const Matrix3<Real>& F) {
+  Matrix3<Real> E = F.transpose() * F;
+  for (int i = 0; i < 3; ++i) E(i, i) -= Real(1);
+  return E * Real(0.5);
+}
+
+/// ½ (tr² E − tr E²).
+template <typename Real>
+Real second_invariant(const Matrix3<Real>& E) {
+  return E(0, 0) * E(1, 1) - E(0, 1) * E(0, 1) + (E(1, 1) * E(2, 2) - E(1, 2) * E(1, 2)) +
+         (E(2, 2) * E(0, 0) - E(0, 2) * E(0, 2));
+}
+
+/// ½ (I₁ − 3) − (J − 1), I₁ = tr FᵀF, of J = det F and the Green strain. Of second order in E, where it is near rest, and
+/// with the digits that such a number can have: for J² = 1 + 2 tr E + 4 e₂ + 8 e₃ with the invariants of E it is
+/// (tr E (J − 1) − 4 e₂ − 8 e₃) / (J + 1).
+template <typename Real>
+Real first_invariant_beyond_volume(const Matrix3<Real>& E, const Real& J) {
+  const Real trace = E(0, 0) + E(1, 1) + E(2, 2), j = J - Real(1), one = Real(1);
+  const Real second_order = trace * j - Real(4) * second_invariant(E) - Real(8) * determinant(E);
+  return where_positive(J, second_order / where_positive(J, J + one, one), trace - j);
+}
+
+/// exp z − 1 − z, of second order: near zero its series, elsewhere from a given exp z − 1.
+template <typename Real>
+Real exp_beyond_linear(const Real& z, const Real& exp_minus_one) {
+  Real series = Real(1);
+  for (int k = 15; k > 2; --k) series = Real(1) + Real(1.0 / k) * z * series;
+  return where_positive(Real(0.25) - z * z, Real(0.5) * z * z * series, exp_minus_one - z);
+}
+
 /// St. Venant–Kirchhoff: ψ = λ/2 (tr E)² + μ E:E with the Green strain E = ½ (FᵀF − I). Polynomial in F, so
 /// defined for inverted elements, too, which it hardly resists.
 template <typename Real = double>
@@ -80,11 +113,6 @@ struct StVenantKirchhoff {
   }
 
  private:
-  static Matrix3<Real> green_strain(const Matrix3<Real>& F) {
-    Matrix3<Real> E = F.transpose() * F;
-    for (int i = 0; i < 3; ++i) E(i, i) -= Real(1);
-    return E * Real(0.5);
-  }
   Matrix3<Real> second_piola_kirchhoff(const Matrix3<Real>& F) const {
     const Matrix3<Real> E = green_strain(F);
     const Real pressure = lambda * E.trace();
@@ -112,13 +140,20 @@ struct MooneyRivlin {
   }
 
   Real energy(const Matrix3<Real>& F) const {
-    const Real J = determinant(F);
+    const Real J = determinant(F), one = Real(1), three = Real(3);
     const Matrix3<Real> C = F.transpose() * F;
     const Real I1 = C.trace();
     const Real I2 = Real(0.5) * (I1 * I1 - C.squaredNorm());
     const Real s = reciprocal_cbrt(J), s2 = s * s;
-    const Real psi =
-        c10 * (s2 * I1 - Real(3)) + c01 * (s2 * s2 * I2 - Real(3)) + Real(0.5) * bulk * (J - Real(1)) * (J - Real(1));
+    // both of second order: near rest without the first, r = J^(1/3)
+    const Matrix3<Real> E = green_strain(F);
+    const Real r = J * s2, beyond = (r - one) * (r - one), two = Real(2);
+    const Real near = Real(0.05) - E.squaredNorm(), shear = two * first_invariant_beyond_volume(E, J);
+    const Real first = where_positive(near, s2 * (shear + beyond * (two * r + one)), s2 * I1 - three);
+    const Real second = where_positive(
+        near, s2 * s2 * (two * shear + Real(4) * second_invariant(E) - beyond * ((three * r + two) * r + one)),
+        s2 * s2 * I2 - three);
+    const Real psi = c10 * first + c01 * second + Real(0.5) * bulk * (J - one) * (J - one);
     return where_positive(J, psi, Real(std::numeric_limits<double>::infinity()));
   }
 

@@ -25,7 +25,8 @@ struct NeoHookean {
   Real energy(const Matrix3<Real>& F) const {
     using std::log;
     const Real J = determinant(F), log_J = log(J);
-    const Real psi = Real(0.5) * mu * (F.squaredNorm() - Real(3)) - mu * log_J + Real(0.5) * lambda * log_J * log_J;
+    const Real psi = mu * (first_invariant_beyond_volume(green_strain(F), J) + (J - Real(1) - log_J)) +
+                     Real(0.5) * lambda * log_J * log_J;
     return where_positive(J, psi, Real(std::numeric_limits<double>::infinity()));
   }
   Matrix3<Real> stress(const Matrix3<Real>& F) const {
@@ -53,9 +54,10 @@ struct StableNeoHookean {
 
   Real energy(const Matrix3<Real>& F) const {
     using std::log;
-    const Real I1 = F.squaredNorm(), J = determinant(F), one = Real(1);
-    return Real(0.5) * mu * (I1 - Real(3) - log((I1 + one) * Real(0.25))) +
-           Real(0.5) * lambda * (J - one) * (J + one - Real(2) * alpha());
+    const Matrix3<Real> E = green_strain(F);
+    const Real J = determinant(F), j = J - Real(1), w = Real(1) + Real(0.5) * E.trace();  // ¼ (I₁ + 1)
+    return mu * (Real(0.75) * first_invariant_beyond_volume(E, J) + Real(0.5) * (w - Real(1) - log(w))) +
+           Real(0.5) * lambda * j * j;
   }
   Matrix3<Real> stress(const Matrix3<Real>& F) const {
     const Real I1 = F.squaredNorm(), one = Real(1);

@@ -30,7 +30,9 @@ struct Ogden {
   Real energy(const Matrix3<Real>& F) const {
     const Principal p(*this, F);
     Real psi = Real(0.5) * bulk * (p.J - Real(1)) * (p.J - Real(1));
-    for (int k = 0; k < 3; ++k) psi += p.mu[k] / p.alpha[k] * p.excess[k].sum();
+    for (int k = 0; k < 3; ++k)  // of first order the three cancel
+      for (int i = 0; i < 3; ++i)
+        psi += p.mu[k] / p.alpha[k] * exp_beyond_linear(Real(p.alpha[k] * p.isochoric[i]), p.excess[k][i]);
     return where_positive(p.J, psi, Real(std::numeric_limits<double>::infinity()));
   }
   /// P = F S with S = Σ sᵢ Nᵢ Nᵢᵀ, sᵢ = τᵢ / λᵢ², τᵢ = λᵢ ∂ψ/∂λᵢ.
@@ -70,6 +72,7 @@ struct Ogden {
     std::array<Real, 3> mu, alpha;
     Vector3<Real> squares;                // λᵢ²
     Matrix3<Real> N;                      // Nᵢ by columns
+    Vector3<Real> isochoric;              // ln λ̄ᵢ
     std::array<Vector3<Real>, 3> excess;  // λ̄ᵢ^α_p − 1 for each p
 
     Principal(const Ogden& material, const Matrix3<Real>& F)
@@ -82,11 +85,12 @@ struct Ogden {
       const PrincipalAxes<Real> axes = principal_axes(Matrix3<Real>(F.transpose() * F));
       squares = axes.values;
       N = axes.vectors;
-      Vector3<Real> logs;  // ln λ̄ᵢ
+      Vector3<Real> logs;  // ln λᵢ
       for (int i = 0; i < 3; ++i) logs[i] = Real(0.5) * log(where_positive(J, squares[i], undefined));
       const Real mean = (logs[0] + logs[1] + logs[2]) / Real(3);
+      for (int i = 0; i < 3; ++i) isochoric[i] = logs[i] - mean;
       for (int p = 0; p < 3; ++p)
-        for (int i = 0; i < 3; ++i) excess[p][i] = exp(alpha[p] * (logs[i] - mean)) - Real(1);
+        for (int i = 0; i < 3; ++i) excess[p][i] = exp(alpha[p] * isochoric[i]) - Real(1);
     }
 
     /// τᵢ: Σ_p μ_p (λ̄ᵢ^α_p − mean) + κ J (J − 1).

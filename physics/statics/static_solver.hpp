@@ -9,7 +9,7 @@ namespace supple {
 struct StaticOptions {
   NonlinearSolver solver =
       Newton{};             ///< LineSearchBfgs from the Hessian at rest is the paper's choice for reduced systems
-  double tolerance = 1e-6;  ///< residual ‖f(u) + k u − f_ext‖ against the largest of these terms
+  double tolerance = 1e-6;  ///< residual against the forces of the object, see Equilibrium
   Index max_iterations = 200;
 };
 

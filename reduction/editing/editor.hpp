@@ -49,11 +49,11 @@ class Editor {
     if (changed_) {  // the stiffness depends on the samples only
       load_ = system_.project(springs);
       changed_ = false;
-    } else {
-      Loads forces;
-      for (const PointSpring& spring : springs.springs)
-        forces.forces.push_back({spring.node, spring.stiffness * spring.displacement});
-      load_.force = system_.project(forces).force;
+    } else if (!load_.springs.empty()) {
+      Vector& targets = load_.springs.targets;
+      for (Index k = 0; k < static_cast<Index>(springs.springs.size()); ++k)
+        targets.segment<3>(3 * k) = springs.springs[k].displacement;
+      load_.force = load_.springs.pull_of_targets();
     }
     Vector u = state_;
     const SolveReport report = solver_.solve(load_, u);
@@ -69,6 +69,14 @@ class Editor {
     state_ = std::move(state);
   }
 
+  /// What forces leave at the state, f(u) + k (u − u*): zero in equilibrium.
+  Vector imbalance() const {
+    Vector g(system_.dim());
+    system_.force(state_, g);
+    if (load_.force.size() == 0) return g;  // nothing was solved yet
+    load_.add_net_pull(state_, g);
+    return g - load_.dead_force();
+  }
   double elastic_energy() const { return system_.energy(state_); }  ///< [J]
   /// E^C [J].
   double control_energy(VectorIn displacement) const {

@@ -53,6 +53,7 @@ class GalerkinSystem {
     const SystemLoad<SparseMatrix> full = system_->project(loads);
     SystemLoad<Matrix> result{subspace_->project(system_->expand(full.force)), {}};
     if (full.has_stiffness()) result.stiffness = project_stiffness(*subspace_, *system_, full.stiffness);
+    if (!full.springs.empty()) result.springs = subspace_springs(*subspace_, loads.springs);
     result.others = outside_terms(loads.others, subspace_->W, S::block);
     return result;
   }

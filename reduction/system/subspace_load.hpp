@@ -26,6 +26,22 @@ Matrix project_gravity(const S& subspace, const Vector& nodal_mass) {
   return gravity;
 }
 
+/// Springs in q, which read the rows of U at their nodes.
+template <Subspace S>
+SystemSprings<Matrix> subspace_springs(const S& subspace, const std::vector<PointSpring>& springs) {
+  const Index count = 3 * static_cast<Index>(springs.size());
+  SystemSprings<Matrix> result{Matrix(count, subspace.dim()), Vector(count), Vector(count)};
+  for (Index row = 0; const PointSpring& spring : springs)
+    for (int x = 0; x < 3; ++x, ++row) {
+      Vector of_unknowns = Vector::Zero(subspace.dim());
+      subspace.add_row(3 * spring.node + x, 1, of_unknowns);
+      result.rows.row(row) = of_unknowns.transpose();
+      result.stiffness[row] = spring.stiffness;
+      result.targets[row] = spring.displacement[x];
+    }
+  return result;
+}
+
 /// Uᵀ of loads on nodes. \param gravity  see project_gravity.
 template <Subspace S>
 SystemLoad<Matrix> project_loads(const S& subspace, const Matrix& gravity, const Loads& loads) {
@@ -33,14 +49,12 @@ SystemLoad<Matrix> project_loads(const S& subspace, const Matrix& gravity, const
   SystemLoad<Matrix> result{gravity * loads.gravity, {}};
   for (const NodalForce& load : loads.forces)
     for (int x = 0; x < 3; ++x) subspace.add_row(3 * load.node + x, load.force[x], result.force);
-  if (!loads.springs.empty()) result.stiffness = Matrix::Zero(subspace.dim(), subspace.dim());
-  for (const PointSpring& spring : loads.springs)
-    for (int x = 0; x < 3; ++x) {
-      Vector row = Vector::Zero(subspace.dim());
-      subspace.add_row(3 * spring.node + x, 1, row);
-      result.force += spring.stiffness * spring.displacement[x] * row;
-      result.stiffness.noalias() += spring.stiffness * row * row.transpose();
-    }
+  if (!loads.springs.empty()) {
+    result.springs = subspace_springs(subspace, loads.springs);
+    const auto& [rows, stiffness, targets] = result.springs;
+    result.stiffness = rows.transpose() * stiffness.asDiagonal() * rows;
+    result.force += result.springs.pull_of_targets();
+  }
   result.others = outside_terms(loads.others, subspace.W, S::block);
   return result;
 }

@@ -59,6 +59,49 @@ using Materials = testing::Types<FromModuli<StVenantKirchhoff>, FromModuli<Moone
                                  IsotropicFung, FungWithFibres, FromModuli<EnergyAlone>, FromModuli<StressAlone>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Every, MaterialConformance, Materials);
 
+template <typename Case>
+class SmallStrains : public testing::Test {};
+using OwnLaws =
+    testing::Types<FromModuli<StVenantKirchhoff>, FromModuli<MooneyRivlin>, FromModuli<NeoHookean>,
+                   FromModuli<StableNeoHookean>, FromModuli<Corotational>, FromModuli<Ogden>, IsotropicFung>;
+TYPED_TEST_SUITE(SmallStrains, OwnLaws);
+
+// There is λ/2 (tr ε)² + μ ε:ε; F = R (I + ε) knows a strain to ε / |ε| only, and no law may lose more than that.
+TYPED_TEST(SmallStrains, LeaveTheEnergyItsDigits) {
+  for (const double poisson : {0.0, 0.35, 0.49}) {
+    const IsotropicModuli m{.young = 2e5, .poisson = poisson};
+    const auto material = TypeParam::from(m);
+    for (const double size : {1e-3, 1e-5, 1e-7, 1e-9})
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const Mat3 D = random_matrix(3, 3, size, seed), strain = 0.5 * (D + D.transpose());
+        const Mat3 R = seed % 2 == 0 ? Mat3(random_rotation(seed)) : Mat3(Mat3::Identity());
+        const double tr = strain.trace(), linear = 0.5 * m.lame() * tr * tr + m.shear() * strain.squaredNorm();
+        // terms of third order fall out of the mean
+        const double mean =
+            0.5 * (material.energy(R * (Mat3::Identity() + strain)) + material.energy(R * (Mat3::Identity() - strain)));
+        const double digits = 30 * std::numeric_limits<double>::epsilon() / size, fourth_order = 100 * size * size;
+        const double incompressible =
+            m.young / (3 * (1 - 2 * poisson)) / m.shear();  // of rounding, which changes volume
+        EXPECT_NEAR(mean, linear, (digits * (1 + incompressible) + fourth_order) * linear) << poisson << ", " << size;
+      }
+  }
+}
+
+// Where laws go over to their other form nothing jumps: differences are the integrals of the stress (Simpson's rule).
+TYPED_TEST(SmallStrains, GoOverToLargeOnesWithoutAJump) {
+  const auto material = TypeParam::from(moduli);
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Mat3 D = random_matrix(3, 3, 1, seed);
+    const auto at = [&](double t) { return Mat3(Mat3::Identity() + t * D); };
+    const auto slope = [&](double t) { return stress(material, at(t)).cwiseProduct(D).sum(); };
+    for (double t = 0.02; t < 0.3; t *= 1.005) {
+      const double h = 0.005 * t, rise = material.energy(at(t + h)) - material.energy(at(t));
+      const double integral = h / 6 * (slope(t) + 4 * slope(t + h / 2) + slope(t + h));
+      EXPECT_NEAR(rise, integral, 1e-8 * std::abs(integral) + 1e-14 * moduli.young) << t << ", " << seed;
+    }
+  }
+}
+
 TEST(IsotropicModuli, ConversionsAgree) {
   EXPECT_NEAR(moduli.bulk(), moduli.lame() + 2 * moduli.shear() / 3, 1e-15 * moduli.bulk());
   EXPECT_NEAR(moduli.young,

@@ -107,6 +107,24 @@ TEST(StaticSolver, StartsFromTheLastEquilibriumAsLoadsMove) {
   EXPECT_LT(balance.norm(), 1e-6 * stiffer.force.norm() * 1.01);
 }
 
+// The scale of residuals is that of what the object bears, however stiff the springs that hold it.
+TEST(StaticSolver, MeasuresResidualsAgainstTheForcesOfTheObject) {
+  const PulledBar bar;
+  for (const double stiffness : {5.0, 5e4, 5e8}) {
+    const SystemLoad<SparseMatrix> load = bar.system.project({.springs = {{bar.end, stiffness, Point(0, 0.1, 0)}}});
+    StaticSolver solver(bar.system);
+    Vector u = Vector::Zero(bar.system.dim()), f = u;
+    const SolveReport report = solver.solve(load, u);
+    EXPECT_EQ(report.status, Status::Converged) << stiffness;
+    bar.system.force(u, f);
+    Vector balance = f;
+    load.add_net_pull(u, balance);
+    const double rounding = 1e-14 * stiffness * u.norm();
+    EXPECT_LT(balance.norm(), 1e-6 * f.norm() * 1.01 + rounding) << stiffness;
+    EXPECT_NEAR(report.residual * f.norm(), balance.norm(), 0.01 * balance.norm() + rounding) << stiffness;
+  }
+}
+
 TEST(StaticSolver, LeavesAnUnloadedBodyWhereItIs) {
   const PulledBar bar;
   for (const NonlinearSolver& method : {NonlinearSolver(Newton{}), NonlinearSolver(LineSearchBfgs{})}) {
@@ -215,6 +233,26 @@ TEST(Bfgs, MinimisesRosenbrocksFunction) {
     EXPECT_EQ(nlopt.status, Status::Converged) << static_cast<int>(method);
     EXPECT_TRUE(is_near(x, Vector::Ones(2), 1e-4));
   }
+}
+
+// NLopt's own methods end where a gradient is small in the units it is given in.
+TEST(Nlopt, MindsNoUnits) {
+  const Matrix A = Vector::LinSpaced(6, 1, 30).asDiagonal();
+  const Vector b = Vector::LinSpaced(6, 1, 2), solution = A.diagonal().cwiseInverse().cwiseProduct(b);
+  for (const double joules : {1e-24, 1.0, 1e24})
+    for (const double metres : {1e-9, 1.0, 1e9}) {
+      Vector x = Vector::Zero(6);
+      const Report report = minimize_by_nlopt(
+          [&](VectorIn u, VectorOut g) {
+            const Vector y = u / metres;
+            g = joules / metres * (A * y - b);
+            return joules * (0.5 * y.dot(A * y) - b.dot(y));
+          },
+          [&](VectorIn, VectorIn g) { return g.norm() * metres / joules; }, x, {.tolerance = 1e-7},
+          std::sqrt(joules) / metres * Matrix(Matrix::Identity(6, 6)));
+      EXPECT_EQ(report.status, Status::Converged) << joules << " J, " << metres << " m: " << report.residual;
+      EXPECT_TRUE(is_near(x / metres, solution, 1e-6)) << joules << " J, " << metres << " m";
+    }
 }
 
 TEST(Bfgs, FindsAQuadraticsMinimumInAsManyStepsAsItHasUnknowns) {
