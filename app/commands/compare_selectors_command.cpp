@@ -88,6 +88,7 @@ void CompareSelectorsCommand::run() const {
   const Stopwatch total;
   const NamedMesh named = load_mesh(mesh);
   const Body body = load_body(*this, named);
+  if (const auto note = locking_note(*this, body)) warn(*note);
   const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
   const std::vector<std::string> names = without_copies(selectors);
   const bool only_all = names == std::vector<std::string>{"all"};  // which has its own size

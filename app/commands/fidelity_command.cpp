@@ -236,6 +236,7 @@ void FidelityCommand::run() const {
   const Stopwatch total;
   const NamedMesh named = load_mesh(mesh);
   const Body body = load_body(*this, named);
+  if (const auto note = locking_note(*this, body)) warn(*note);
   std::vector<EditScene> edits;
   for (const std::filesystem::path& scene : scenes) edits.push_back(read_edit_scene(scene, body));
   ProblemOptions problem = *this;

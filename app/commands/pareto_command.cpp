@@ -187,6 +187,7 @@ void ParetoCommand::run() const {
     throw InputError("--tolerances holds several, whose errors show in motions only: expected --trajectory, too");
   const NamedMesh named = load_mesh(mesh);
   const Body body = load_body(*this, named);
+  if (const auto note = locking_note(*this, body)) warn(*note);
   Sweep sweep(*this, body);
   const std::vector<ReduceOptions> wanted = models_to_make(*this, named, body);
   const OutputFolder folder(output);

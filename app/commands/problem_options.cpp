@@ -1,9 +1,12 @@
 #include <app/commands/problem_options.hpp>
 #include <app/report/json_report.hpp>
+#include <app/report/terminal.hpp>
 #include <app/scene/pose_file.hpp>
+#include <io/builtin/builtin_meshes.hpp>
 #include <io/mesh/node_sets.hpp>
 #include <io/text/json_fields.hpp>
 #include <physics/body/force_models.hpp>
+#include <physics/body/locking.hpp>
 #include <physics/body/material_law.hpp>
 #include <reduction/basis/subspace_library.hpp>
 
@@ -181,6 +184,17 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
           return solid_body(mesh);
       },
       named.mesh);
+}
+
+std::optional<std::string> locking_note(const ProblemOptions& problem, const Body& body) {
+  const std::optional<double> poisson = locking_poisson(body);
+  if (!poisson) return {};
+  std::string cells(cell_name(body)), box = "hexbox:", same = problem.mesh;
+  if (std::holds_alternative<Solid>(body)) cells = "linear " + cells;
+  if (same.starts_with(box)) same = "bar:" + same.substr(box.size());
+  return "Poisson's ratio is " + shown(*poisson, 5) + ": above 0.45 " + cells +
+         " lock, and the object is too stiff; quadratic tets do not lock: " +
+         (is_builtin(problem.mesh) ? "the mesh tet10:" + same : "a mesh of tets with 10 nodes");
 }
 
 std::string recipe_of(const ProblemOptions& problem) {

@@ -40,6 +40,8 @@ struct ProblemOptions {
 
 /// The mesh with the materials, damping and held nodes of the options.
 Body load_body(const ProblemOptions& problem, const NamedMesh& named);
+/// What to know of an object whose elements lock, and which do not; see locking_poisson().
+std::optional<std::string> locking_note(const ProblemOptions& problem, const Body& body);
 /// The recipe by name, "relaxed", "subspace" or "paper": that of the options, or else the best that the command has.
 std::string recipe_of(const ProblemOptions& problem);
 /// The recipe with what the options change; selector and size are left to the command.

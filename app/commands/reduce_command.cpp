@@ -49,6 +49,7 @@ ReduceOptions method(const ReduceCommand& command, const NamedMesh& named, const
     options.points = largest_search;
   }
   if (!command.full_loads) options.full_loads = 8;
+  options.singular = SingularModels::Refuse;
   if (command.points) options.points = *command.points;
   if (command.selector) options.selector = *command.selector;
   const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });
@@ -214,7 +215,9 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
   json["rest_stiffness"] = {{"smallest", report.rest_stiffness.smallest},
                             {"largest", report.rest_stiffness.largest},
                             {"sound", report.rest_stiffness.is_sound()},
-                            {"points_for_sound", report.points_for_sound_stiffness}};
+                            {"weak", report.rest_stiffness.is_weak()},
+                            {"points_for_sound", report.points_for_sound_stiffness},
+                            {"points_too_weak", report.points_too_weak}};
   const SelectionReport& selection = report.selection;
   json["selection"] = {{"selector", options.selector},
                        {"status", to_string(selection.status)},
@@ -301,6 +304,10 @@ void print_summary(const ReduceCommand& command, const ReducedModel& model, cons
                              std::to_string(report.omega.size()) + " modes" +
                              (report.rigid_modes > 0 ? " (" + std::to_string(report.rigid_modes) + " rigid)" : "")},
             {"points", std::to_string(report.points) + " " + kind}};
+  if (report.points_too_weak > 0)
+    rows.emplace_back("", "as few as hold the object at rest: " + std::to_string(report.points_too_weak) + " have " +
+                              (command.target_error ? "the target error" : "the usual number") +
+                              " and leave a direction with less than 10 % of its stiffness");
   rows.insert(rows.end(), search.begin(), search.end());
   const FullError& full = report.full_error;
   if (full.loads > 0) {
@@ -372,6 +379,7 @@ void ReduceCommand::run() const {
     result = reduce(body, options, &report, progress_bar());
   }
   clear_progress();
+  if (const auto note = locking_note(*this, body)) report.notes.insert(report.notes.begin(), *note);
   result.provenance = {
       {"version", SUPPLE_VERSION},
       {"mesh", mesh},

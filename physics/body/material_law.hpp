@@ -43,6 +43,8 @@ struct MaterialLaw {
       SolidComponent component)>;
   CellModel<HexMesh> hexahedra = {};
   CellModel<QuadraticTetMesh> quadratic_tets = {};
+  /// Poisson's ratio at rest of such values, see poisson_at_rest(). Empty where a law does not tell.
+  std::function<double(const std::vector<double>&)> poisson = {};
 
   /// Those that agree with the moduli, with some replaced by name.
   /// \throws std::invalid_argument for a name that the law does not have, for values of which rest is no stable
@@ -87,6 +89,15 @@ std::vector<Material<double>> materials_of_cells(Index num_cells, const RowMatri
   return result;
 }
 
+/// The material with these values of its parameters. \throws std::invalid_argument for another number of them.
+template <template <typename> class Material>
+Material<double> material_with(const std::vector<double>& values) {
+  std::array<double, num_material_parameters<Material>> parameters;
+  require_size("parameters of the material", static_cast<Index>(values.size()), static_cast<Index>(parameters.size()));
+  std::ranges::copy(values, parameters.begin());
+  return material_of<Material>(parameters);
+}
+
 /// Why a material is not fit to be reduced: energy at rest not a number, stress at rest, or a tangent there that is not
 /// positive semi-definite. Empty if it is fit.
 template <template <typename> class Material>
@@ -101,6 +112,22 @@ std::string objection_to(const Material<double>& material) {
   if (eigen.eigenvalues()[0] < -1e-9 * C.norm()) return "the rest state is not stable";
   if (C.isZero(0)) return "it resists nothing";
   return "";
+}
+
+/// Poisson's ratio of a material at rest, (3 κ − 2 μ) / (6 κ + 2 μ) with κ what resists changes of volume and μ what resists
+/// shear, the mean over all of its five directions where the material is anisotropic.
+template <template <typename> class Material>
+double poisson_at_rest(const Material<double>& material) {
+  const Matrix9<double> C = tangent(material, Matrix3<double>::Identity());
+  double bulk = 0, trace = 0;  // of C over all symmetric strains: 3 κ + 5 · 2 μ
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int ij = i + 3 * j, ji = j + 3 * i;
+      bulk += C(4 * i, 4 * j) / 9;
+      trace += 0.5 * (C(ij, ij) + C(ij, ji));
+    }
+  const double shear = (trace - 3 * bulk) / 10;
+  return (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear);
 }
 
 /// The model of a mesh, its type erased; see MaterialLaw::tets.
@@ -136,17 +163,13 @@ MaterialLaw make_material_law(std::string name, std::string description = "") {
             return std::vector<double>(values.begin(), values.end());
           },
       .objection =
-          [](const std::vector<double>& values) {
-            std::array<double, num_material_parameters<Material>> parameters;
-            require_size("parameters of the material", static_cast<Index>(values.size()),
-                         static_cast<Index>(parameters.size()));
-            std::ranges::copy(values, parameters.begin());
-            return objection_to<Material>(material_of<Material>(parameters));
-          },
+          [](const std::vector<double>& values) { return objection_to<Material>(material_with<Material>(values)); },
       .tets = [](const TetMesh& mesh, const RowMatrix& materials,
                  const std::vector<std::int32_t>& of_tet) { return erased_solid<Material>(mesh, materials, of_tet); },
       .hexahedra = cells,
       .quadratic_tets = cells,
+      .poisson =
+          [](const std::vector<double>& values) { return poisson_at_rest<Material>(material_with<Material>(values)); },
   };
 }
 

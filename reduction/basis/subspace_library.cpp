@@ -6,6 +6,8 @@
 #include <reduction/basis/skinning_modes.hpp>
 #include <reduction/basis/subspace_library.hpp>
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -171,6 +173,25 @@ Index skinning_weights(const SubspaceChoice& choice) {
   return std::max<Index>(1, choice.dimension > 0 ? choice.dimension / 12 : (choice.modes + 1) / 2);
 }
 
+Index missing_rigid_motions(const RestState& object, const AnyBasis& basis) {
+  const Index n = object.numbering.num_nodes();
+  if (object.node_dim != 3 || object.positions.rows() != n) return 0;
+  const FreeComponents parts = find_free_components(object.stencils, object.stencil_size, object.numbering);
+  if (parts.free.empty()) return 0;
+  const Vector mass = object.mass_of_rows();
+  const Matrix rigid = mass_orthonormalize(RowMatrix(rigid_modes(object.positions, parts)), mass).W;
+  Matrix outside(rigid.rows(), rigid.cols());
+  std::visit(
+      [&](const auto& subspace) {
+        for (Index j = 0; j < rigid.cols(); ++j)
+          outside.col(j) = rigid.col(j) - subspace->reconstruct(subspace->project(mass.cwiseProduct(rigid.col(j))));
+      },
+      basis);
+  const Eigen::SelfAdjointEigenSolver<Matrix> squares(outside.transpose() * mass.asDiagonal() * outside,
+                                                      Eigen::EigenvaluesOnly);
+  return (squares.eigenvalues().array() > 1e-12).count();
+}
+
 AnyBasis build_subspace(const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run) {
   const std::vector<Choice> parts = choices_of(choice.name);
   const auto build = [&](const Choice& part) {
@@ -183,6 +204,17 @@ AnyBasis build_subspace(const RestState& object, const SubspaceChoice& choice, c
     sum = std::visit([&](const auto& first,
                          const auto& second) -> AnyBasis { return share(join(*first, *second, object.nodal_mass)); },
                      sum, build(parts[k]));
+  if (const Index missing = missing_rigid_motions(object, sum); missing > 0)
+    sum = std::visit(
+        [&](const auto& basis) -> AnyBasis {
+          auto noted = *basis;
+          noted.report.notes.push_back("the subspace lacks " + std::to_string(missing) +
+                                       " rigid motions of what nothing holds, which cannot move freely in it; in a sum "
+                                       "with modes, such as modal+" +
+                                       choice.name + ", it can");
+          return share(std::move(noted));
+        },
+        sum);
   return sum;
 }
 

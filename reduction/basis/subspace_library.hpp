@@ -80,7 +80,12 @@ void check(const SubspaceChoice& choice);
 /// Number of weights of the skinning modes of a choice.
 Index skinning_weights(const SubspaceChoice& choice);
 
-/// The basis of a choice: of one name, or what several span together, M-orthonormal. \throws as the builders;
+/// How many of the rigid motions of the parts that nothing holds, translations and infinitesimal rotations, are not in a
+/// subspace: 0 for all that span modes or affine fields, which snapshots (PCA) need not.
+Index missing_rigid_motions(const RestState& object, const AnyBasis& basis);
+
+/// The basis of a choice: of one name, or what several span together, M-orthonormal. A note in its report says where a free
+/// part lacks rigid motions. \throws as the builders;
 /// SolverError for a basis that is none: not finite or orthonormal, or moving nodes that are held.
 AnyBasis build_subspace(const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run = {});
 

@@ -16,6 +16,10 @@
 
 namespace supple {
 
+/// What becomes of a selection that leaves a direction without stiffness at rest, see StiffnessRange::is_singular(): a model
+/// with a note, for studies that measure such models, too; or a SolverError with the number of components that it takes.
+enum class SingularModels { Note, Refuse };
+
 struct ReduceOptions {
   std::string subspace = "extended";  ///< one of known_subspaces() or a sum of some, see SubspaceChoice
   Index modes = 15;                   ///< r, rigid ones included
@@ -37,8 +41,11 @@ struct ReduceOptions {
   /// object than its subspace with all components.
   bool relaxed = false;
   std::string selector = "nn-sp";  ///< one of known_selectors(), with options as in "nn-sp:patience=3"
-  Index points = 150;              ///< s, largest number of components; 0: four thirds of the dimension, shells: eight
-  double target_error = 0;         ///< if positive: as few components as reach this training error
+  /// s, largest number of components; 0: four thirds of the dimension, shells: eight; more if these leave it weak.
+  Index points = 150;
+  /// If positive: as few components as reach this training error and leave no direction weak, see StiffnessRange::is_weak().
+  double target_error = 0;
+  SingularModels singular = SingularModels::Note;
   std::vector<Index> candidates = {};  ///< components that may be selected beside must_keep; empty: all
   std::vector<Index> must_keep = {};   ///< components that every selection has, unless their weight would be 0
   Selection warm_start = {};           ///< an earlier selection to improve, such as that of a model to update
@@ -104,6 +111,8 @@ struct ReduceReport {
   /// About how many components would make that sound; 0 where it is, or where forces relaxed: what those are fitted to is
   /// not the stiffness of the subspace, and more components come no nearer to it.
   Index points_for_sound_stiffness = 0;
+  /// How many components were enough for what was asked, but left a direction weak, so that there are more; 0: none did.
+  Index points_too_weak = 0;
   SelectionReport selection;
   std::vector<std::pair<std::string, double>> seconds;  ///< by stage, in order
   double total_seconds = 0;

@@ -11,8 +11,11 @@
 #include <sparse/selectors/nn_sp.hpp>
 #include <sparse/selectors/selector_library.hpp>
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
+#include <vector>
 
 namespace supple {
 
@@ -29,32 +32,116 @@ struct Reduction : ReducedForces<std::shared_ptr<const S>> {
   }
 };
 
-/// The stage of selection: at most as many components as the options say, by select(problem, request).
-template <ForceModel Model, Subspace S, typename Selector>
-Selection select_components(const Training<Model, S>& training, const Selector& select, const ReduceOptions& options,
-                            const Progress& progress) {
-  const Index d = training.object.subspace->dim();
-  const Index points = options.points > 0 ? options.points : (training.object.traits.thin ? 8 * d : 4 * d) / 3;
-  SelectionRequest request(std::min<Index>(points, training.fitting.cols()));
-  request.target_error = options.target_error;
-  request.candidates = options.candidates;
-  request.must_keep = options.must_keep;
-  request.warm_start = options.warm_start;
-  request.progress = progress;
-  if (!training.held_out.empty())
-    request.validate = [&](const std::vector<Index>& indices, VectorIn weights) {
-      return training.held_out.front().second.error(indices, weights);
-    };
-  const auto run = [&](const auto& problem) {
-    return options.target_error > 0 ? smallest_selection(select, problem, request) : select(problem, request);
-  };
-  return training.with_problem([&](const auto& problem) {
-    if constexpr (std::same_as<Selector, AnySelector>)
-      return run(AnyProblem(problem));
-    else
-      return run(problem);
-  });
+/// K̃(0) of components against the exact stiffness.
+template <ForceModel Model, Subspace S>
+StiffnessRange rest_stiffness_of(const Training<Model, S>& training, const WorkingComponents& working) {
+  return stiffness_range(training.object.stiffness_at_rest(working), training.object.modes);
 }
+/// Whether components leave a direction weak; never said of forces without a symmetric tangent, whose directions have no
+/// stiffness of their own.
+template <ForceModel Model, Subspace S>
+bool is_weak(const Training<Model, S>& training, const WorkingComponents& working) {
+  return has_symmetric_tangent<Model>() && rest_stiffness_of(training, working).is_weak();
+}
+
+struct SelectedComponents {
+  Selection selection;
+  Index too_weak = 0;  ///< size of a smaller selection that was enough but for its stiffness at rest; 0: there was none
+};
+
+/// The stage of selection, by select(problem, request): at most as many components as the options say. Where they leave the
+/// number open, there are as many as leave no direction weak, as far as that takes no more than eight for each dimension.
+template <ForceModel Model, Subspace S, typename Selector>
+class ComponentSelection {
+ public:
+  ComponentSelection(const Training<Model, S>& training, const Selector& select, const ReduceOptions& options)
+      : training_(training), select_(select), options_(options) {}
+
+  SelectedComponents operator()(const Progress& progress) const {
+    return with_problem([&](const auto& problem) -> SelectedComponents {
+      const Index d = training_.object.subspace->dim();
+      SelectionRequest request = request_for(
+          options_.points > 0 ? options_.points : (training_.object.traits.thin ? 8 * d : 4 * d) / 3, progress);
+      request.target_error = options_.target_error;
+      const bool to_error = options_.target_error > 0;
+      Selection selection = to_error ? smallest_selection(select_, problem, request) : select_(problem, request);
+      const bool is_open = to_error ? reaches_error(selection) : options_.points == 0;
+      if (!is_open || !leaves_weak(selection)) return {std::move(selection)};
+      SelectedComponents result{{}, selection.size()};
+      request = request_for(options_.points > 0 ? options_.points : most(), progress);
+      request.warm_start = std::move(selection);
+      const auto enough = [&](const Selection& c) { return reaches_error(c) && !leaves_weak(c); };
+      result.selection = smallest_selection(select_, problem, request, enough);
+      if (enough(result.selection)) {  // the selector, which was given a size, knows nothing of that
+        result.selection.report.status = Status::Converged;
+        result.selection.report.stop_reason = "as few as leave no direction weak";
+      }
+      return result;
+    });
+  }
+
+  /// A number of points, to a tenth of it, that leaves no direction weak where `selection` does; 0: not even most() do.
+  Index points_that_hold(const Selection& selection, const Progress& progress) const {
+    if (options_.points >= most()) return 0;
+    return with_problem([&](const auto& problem) -> Index {
+      // each from the start, as who asks for so many will have it
+      const auto hold = [&](Index points) { return !leaves_weak(select_(problem, request_for(points, progress))); };
+      Index few = std::max(selection.size(), static_cast<Index>(options_.must_keep.size()));
+      Index enough = std::min(most(), 2 * few);
+      for (; !hold(enough); enough = std::min(most(), 2 * few)) {
+        if (enough == most()) return 0;
+        few = enough;
+      }
+      while (enough - few > std::max<Index>(1, enough / 10)) {
+        const Index middle = (few + enough) / 2;
+        (hold(middle) ? enough : few) = middle;
+      }
+      return enough;
+    });
+  }
+
+  /// The most components that are tried: of those that may be chosen eight for each dimension, if more are not asked for.
+  Index most() const {
+    const auto kept = static_cast<Index>(options_.must_keep.size());
+    std::vector<Index> some;
+    std::ranges::set_union(options_.candidates, options_.must_keep, std::back_inserter(some));
+    const Index eligible = options_.candidates.empty() ? training_.fitting.cols() : static_cast<Index>(some.size());
+    return std::min(eligible, std::max({kept, options_.points, 8 * training_.object.subspace->dim()}));
+  }
+
+ private:
+  SelectionRequest request_for(Index points, const Progress& progress) const {
+    SelectionRequest request(std::min<Index>(points, training_.fitting.cols()));
+    request.candidates = options_.candidates;
+    request.must_keep = options_.must_keep;
+    request.warm_start = options_.warm_start;
+    request.progress = progress;
+    if (!training_.held_out.empty())
+      request.validate = [this](const std::vector<Index>& indices, VectorIn weights) {
+        return training_.held_out.front().second.error(indices, weights);
+      };
+    return request;
+  }
+  bool reaches_error(const Selection& selection) const {
+    return options_.target_error == 0 || selection.report.training_error <= options_.target_error;
+  }
+  bool leaves_weak(const Selection& selection) const {
+    return is_weak(training_, working_components(selection, options_.selector));
+  }
+  template <typename Visitor>
+  auto with_problem(const Visitor& visit) const {
+    return training_.with_problem([&](const auto& problem) {
+      if constexpr (std::same_as<Selector, AnySelector>)
+        return visit(AnyProblem(problem));
+      else
+        return visit(problem);
+    });
+  }
+
+  const Training<Model, S>& training_;
+  const Selector& select_;
+  const ReduceOptions& options_;
+};
 
 /// The stage of checks: what a selection is worth.
 struct SelectionChecks {
@@ -165,16 +252,32 @@ std::optional<ErrorIndicator> indicator_of(const Training<Model, S>& training, c
 template <ForceModel Model, Subspace S, typename Selector>
 Reduction<Model, S> reduce(const Training<Model, S>& training, const Selector& select, const ReduceOptions& options,
                            StageClock& stage) {
-  const Selection selection =
-      stage("selection", [&](auto) { return select_components(training, select, options, stage.progress()); });
+  const ComponentSelection<Model, S, Selector> select_components(training, select, options);
+  const SelectedComponents selected = stage("selection", [&](auto) { return select_components(stage.progress()); });
+  const Selection& selection = selected.selection;
   WorkingComponents working = working_components(selection, options.selector);
   stage("refit", [&](auto) {
     WorkingComponents refit = training.refitted(working);
-    if (options.target_error == 0 || training.error(refit) <= options.target_error) working = std::move(refit);
+    const bool misses = options.target_error > 0 && training.error(refit) > options.target_error;
+    const bool weakens = is_weak(training, refit) && !is_weak(training, working);
+    if (!misses && !weakens) working = std::move(refit);
   });
   const SelectionChecks checks = stage("checks", [&](auto) { return check(training, working); });
 
   ReduceReport report = report_of(training);
+  report.points_too_weak = selected.too_weak;
+  if (is_weak(training, working)) {
+    const std::string what =
+        weakness(checks.rest_stiffness, static_cast<Index>(working.indices.size()), training.object.traits);
+    if (checks.rest_stiffness.is_singular() && options.singular == SingularModels::Refuse) {
+      const Index enough = stage("points that hold",
+                                 [&](auto) { return select_components.points_that_hold(selection, stage.progress()); });
+      throw SolverError(what + ": " +
+                        (enough > 0 ? "it takes " + std::to_string(enough) + " points"
+                                    : "not even " + std::to_string(select_components.most()) + " points mend that"));
+    }
+    report.notes.push_back(what);
+  }
   EquilibriumPairs pairs;
   if (options.full_loads > 0) {
     pairs = stage("full object", [&](auto) { return compare_with_full(training, working, options); });

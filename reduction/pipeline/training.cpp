@@ -3,6 +3,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <sstream>
+
 namespace supple {
 
 WorkingComponents working_components(const Selection& selection, const std::string& selector) {
@@ -14,6 +16,18 @@ WorkingComponents working_components(const Selection& selection, const std::stri
   WorkingComponents result = with_positive_weights(selection.indices, selection.weights);
   if (result.indices.empty()) throw SolverError("the selector found no component with a positive weight");
   return result;
+}
+
+std::string weakness(const StiffnessRange& range, Index points, const ObjectTraits& traits) {
+  std::ostringstream words;
+  words.precision(2);
+  words << "the " << points << " selected " << traits.component_name << " leave a direction with ";
+  if (range.smallest > 1e-6)
+    words << 100 * range.smallest << " % of its stiffness at rest";
+  else
+    words << (range.smallest < -1e-6 ? "a negative" : "no") << " stiffness at rest";
+  words << (range.is_singular() ? ", and the object would have no shape of its own" : ", and move too far along it");
+  return words.str();
 }
 
 WorkingComponents with_positive_weights(std::span<const Index> indices, VectorIn weights) {

@@ -37,6 +37,9 @@ WorkingComponents working_components(const Selection& selection, const std::stri
 /// Those with a positive weight, in the order given.
 WorkingComponents with_positive_weights(std::span<const Index> indices, VectorIn weights);
 
+/// What is wrong with components that leave a direction weak, in words.
+std::string weakness(const StiffnessRange& range, Index points, const ObjectTraits& traits);
+
 /// The seeds of what is drawn at random in a run, apart from one another. The seed of the run moves all of them.
 struct RunSeeds {
   std::uint64_t poses, held_out, equilibria, full_loads, fresh_equilibria, indicator, selection;

@@ -20,6 +20,10 @@ struct StiffnessRange {
   double deviation() const { return std::max(1 - smallest, largest - 1); }
   /// Whether no direction is 30 % off or more.
   bool is_sound() const { return deviation() < sound; }
+  /// Whether a direction has less than a tenth of its stiffness left: loads along it displace more than ten times too far.
+  bool is_weak() const { return smallest < weak; }
+  /// Whether one has less than a hundredth left, none or a negative stiffness: nothing that the model answers holds.
+  bool is_singular() const { return smallest < singular; }
   /// How many components would make it sound where so many do not: deviations of fits to all components fall a little
   /// faster than 1 / s (docs/decisions).
   Index points_for_sound(Index points) const {
@@ -27,7 +31,7 @@ struct StiffnessRange {
   }
 
  private:
-  static constexpr double sound = 0.3;
+  static constexpr double sound = 0.3, weak = 0.1, singular = 0.01;
 };
 
 /// \param stiffness  K̃, d × d. \param exact  modes of K̄.

@@ -1,17 +1,20 @@
 #pragma once
-/// \file Search for the smallest size that reaches an error, for selectors that need a size.
+/// \file Search for the smallest size that reaches a goal, for selectors that need a size.
 
 #include <sparse/selection/selection_run.hpp>
 
+#include <concepts>
+
 namespace supple {
 
-/// The smallest selection, to 5 % of its size and within the request's, by which `select` reaches the request's
-/// target error: sizes are doubled until one does, then bisected; each run starts from the largest selection that failed.
-/// Seconds, iterations and columns evaluated are those of all runs together, the history that of the answer.
-/// \note about 2 log₂(size) runs of `select`. If no size reaches the target, the largest is returned, with
-/// the reason.
-template <typename S, FittingProblem P>
-Selection smallest_selection(const S& select, const P& problem, SelectionRequest request) {
+/// The smallest selection, to 5 % of its size and within the request's, of those that `select` makes for which
+/// `reached(selection)` holds: sizes are doubled until it does, then bisected; each run starts from the largest selection
+/// for which it did not. Seconds, iterations and columns evaluated are those of all runs together, the history that of the
+/// answer.
+/// \note about 2 log₂(size) runs of `select`. If
+/// none reaches it, the largest is returned, with the reason.
+template <typename S, FittingProblem P, std::predicate<const Selection&> Reached>
+Selection smallest_selection(const S& select, const P& problem, SelectionRequest request, const Reached& reached) {
   const Stopwatch stopwatch;
   const SelectionRules rules(request, problem.cols(), problem.rhs());
   const Index largest = rules.size();
@@ -23,7 +26,6 @@ Selection smallest_selection(const S& select, const P& problem, SelectionRequest
     columns_evaluated += selection.report.columns_evaluated;
     return selection;
   };
-  const auto reached = [&](const Selection& c) { return c.report.training_error <= request.target_error; };
 
   Index failing = 0, size = std::min(largest, std::max<Index>(8, static_cast<Index>(rules.start().size())));
   Selection best = select_at(size);
@@ -52,6 +54,14 @@ Selection smallest_selection(const S& select, const P& problem, SelectionRequest
   best.report.columns_evaluated = columns_evaluated;
   best.report.seconds = stopwatch.seconds();
   return best;
+}
+
+/// The smallest selection that reaches the request's target error.
+template <typename S, FittingProblem P>
+Selection smallest_selection(const S& select, const P& problem, const SelectionRequest& request) {
+  return smallest_selection(select, problem, request, [error = request.target_error](const Selection& c) {
+    return c.report.training_error <= error;
+  });
 }
 
 }  // namespace supple

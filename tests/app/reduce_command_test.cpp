@@ -35,6 +35,14 @@ class ReduceCommandTest : public SuppleProcess {
                         "4",      "--poses", "20", "--points",   "24",    "--held-out", "5"};
     return by_the_subspace(std::move(arguments), more);
   }
+  /// The report of a model whose few points may be warned of.
+  json report_of_few(Arguments arguments) const {
+    arguments.insert(arguments.end(), {"--json", "-"});
+    const Outcome outcome = supple(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    if (!outcome.err.empty()) EXPECT_THAT(outcome.err, HasSubstr("leave a direction with"));
+    return outcome.json();
+  }
   /// Removes and spoils each array of the model that a job makes, in turn.
   void expect_arrays_checked(const Arguments& job) const;
 
@@ -150,7 +158,7 @@ TEST_F(ReduceCommandTest, FitsToTheFullObjectByDefault) {
 TEST_F(ReduceCommandTest, ComparesFreeObjectsAndShellsWithTheFullOnes) {
   for (const char* mesh : {"bar:8x2x2", "plate:12x6", "cylinder:12x12"}) {
     SCOPED_TRACE(mesh);
-    const json report = this->report({"reduce", mesh, "-o", "free.supple", "--modes", "10", "--held-out", "0"});
+    const json report = report_of_few({"reduce", mesh, "-o", "free.supple", "--modes", "10", "--held-out", "0"});
     EXPECT_EQ(report["options"]["recipe"], "relaxed");
     EXPECT_GE(report["full_error"]["loads"], 6);
     EXPECT_LT(report["full_error"]["total"], 0.5);
@@ -164,13 +172,13 @@ TEST_F(ReduceCommandTest, UpdatesAnEarlierSelectionAmongCandidates) {
   for (const char* selector : {"nn-sp", "nn-omp", "ecm"}) {
     Arguments job = again;
     job.insert(job.end(), {"--selector", selector});
-    EXPECT_LE(report(job)["training_error"], first["training_error"].get<double>() * (1 + 1e-9)) << selector;
+    EXPECT_LE(report_of_few(job)["training_error"], first["training_error"].get<double>() * (1 + 1e-9)) << selector;
   }
   std::string some, kept;
   for (int k = 0; k < 192; k += 3) some += std::to_string(k) + "\n";
   write("some.txt", some);
   write("kept.txt", "1 # no candidate\n");
-  EXPECT_LT(report(small({"--candidates", "some.txt", "--must-keep", "kept.txt"}))["training_error"], 0.5);
+  EXPECT_LT(report_of_few(small({"--candidates", "some.txt", "--must-keep", "kept.txt"}))["training_error"], 0.5);
   for (const json& component : report({"info", "bar.supple"})["indices"])
     EXPECT_TRUE(component == 1 || component.get<int>() % 3 == 0) << component;
   expect_refusal(small({"--warm-start", "none.supple"}), {"none.supple"});
@@ -198,8 +206,7 @@ TEST_F(ReduceCommandTest, WeightsAllCandidatesByNnls) {
   EXPECT_EQ(report(all)["options"]["points"], 160 + 10);  // 162, 165 … 189
   Arguments large = all;
   large[1] = "bar:20x20x20";
-  large.insert(large.end(), {"--full-loads", "0"});  // so few components are no object
-  EXPECT_EQ(report(large)["options"]["points"], 170);
+  expect_refusal(large, {"not even 170 points mend that"}, 1);  // so few components are no object
   all.insert(all.end(), {"--target-error", "0.1"});
   expect_refusal(all, {"--target-error", "all"});
   expect_refusal(small({"--selector", "all"}), {"192", "--points 30"});
@@ -406,6 +413,56 @@ TEST_F(ReduceCommandTest, RefusesBadInputInOneLineAndLeavesNothing) {
   refuse({"reduce", "bar:8x2x2"}, {"--output"});
   refuse({"reduce", "bar:2x1x1", "-o", "m", "--modes", "1000", "--plots", "p1/p2/p3"}, {"1000"});
   EXPECT_TRUE(files().empty()) << files().front();
+}
+
+TEST_F(ReduceCommandTest, MakesNoModelThatCannotHold) {
+  const auto by = [](const std::string& points, const Arguments& more) {
+    Arguments arguments = small(more);
+    *(std::ranges::find(arguments, "--points") + 1) = points;
+    return arguments;
+  };
+  const json report = this->report(by("100", {"--target-error", "0.5"}));
+  EXPECT_LE(report["training_error"], 0.5);
+  EXPECT_EQ(report["rest_stiffness"]["weak"], false);
+  EXPECT_GE(report["rest_stiffness"]["smallest"], 0.1);
+  const Index too_weak = report["rest_stiffness"]["points_too_weak"];
+  ASSERT_GT(too_weak, 0);
+  EXPECT_LT(too_weak, report["points"]);
+  EXPECT_THAT(supple(by("100", {"--target-error", "0.5"})).out,
+              HasSubstr(std::to_string(too_weak) + " have the target error"));
+
+  std::filesystem::remove(folder / "bar.supple");
+  expect_refusal(by("4", {}), {"selected tets leave a direction", "it takes", "points"}, 1);
+  expect_refusal(by("5", {"--target-error", "0.5"}), {"it takes"}, 1);
+  EXPECT_TRUE(files().empty());
+  // twice as many as the rank takes hold it, but badly
+  const Outcome weak = supple(by("14", {"--json", "-"}));
+  EXPECT_EQ(weak.exit_code, 0) << weak.err;
+  EXPECT_THAT(weak.err, HasSubstr("warning: the 14 selected tets leave a direction with"));
+  EXPECT_EQ(weak.json()["rest_stiffness"]["weak"], true);
+}
+
+TEST_F(ReduceCommandTest, NamesElementsThatDoNotLock) {
+  const auto warning = [&](const std::string& mesh, const Arguments& more) {
+    Arguments arguments = cells(mesh, {"--json", "-"});
+    *(std::ranges::find(arguments, "--points") + 1) = "60";
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = supple(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const json notes = outcome.json()["notes"];
+    if (notes.empty()) return std::string();
+    EXPECT_THAT(outcome.err, HasSubstr(notes[0].get<std::string>()));
+    return notes[0].get<std::string>();
+  };
+  EXPECT_THAT(warning("bar:8x2x2", {"--poisson", "0.4999"}),
+              AllOf(HasSubstr("0.4999: above 0.45 linear tets lock"), HasSubstr("tet10:bar:8x2x2")));
+  EXPECT_THAT(warning("hexbox:8x3x3", {"--poisson", "0.46", "--components", "gauss-points"}),
+              AllOf(HasSubstr("hexahedra lock"), HasSubstr("tet10:bar:8x3x3")));
+  EXPECT_THAT(warning("bar:8x2x2", {"--parameter", "lambda=1e7"}), HasSubstr("lock"));
+  EXPECT_EQ(warning("tet10:bar:8x2x2", {"--poisson", "0.4999"}), "");
+  EXPECT_EQ(warning("bar:8x2x2", {"--poisson", "0.45"}), "");
+  ASSERT_EQ(supple({"mesh", "bar:8x2x2", "-o", "bar.vtu"}).exit_code, 0);
+  EXPECT_THAT(warning("bar.vtu", {"--poisson", "0.48"}), HasSubstr("a mesh of tets with 10 nodes"));
 }
 
 TEST_F(ReduceCommandTest, SaysWhenATargetIsOutOfReach) {

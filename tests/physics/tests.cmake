@@ -16,6 +16,7 @@ supple_test(shells LABEL unit LINKS supple::physics
 supple_test(elements LABEL unit LINKS supple::physics
   SOURCES physics/mesh/elements_test.cpp physics/model/solid_conformance_test.cpp)
 supple_test(cell_mesh LABEL unit LINKS supple::physics SOURCES physics/mesh/cell_mesh_test.cpp)
+supple_test(locking LABEL unit LINKS supple::physics supple::eigensolver SOURCES physics/body/locking_test.cpp)
 supple_test(rods LABEL unit LINKS supple::physics SOURCES physics/model/rods_test.cpp)
 supple_test(composite_model LABEL unit LINKS supple::reduction SOURCES physics/model/composite_model_test.cpp)
 supple_test(heat LABEL unit LINKS supple::physics
