@@ -141,8 +141,8 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["missed_steps"] = effort.missed;
   json["halved_steps"] = run.halved_steps;
   const EnergyBalance& energy = run.last_good().energy;
-  json["energy"] = {{"kinetic", energy.kinetic},         {"elastic", energy.elastic}, {"work", energy.work},
-                    {"damped", energy.damped},           {"made", energy.made()},     {"most_made", effort.energy_made},
+  json["energy"] = {{"kinetic", energy.kinetic},        {"elastic", energy.elastic}, {"work", energy.work},
+                    {"damped", energy.damped},          {"made", energy.made()},     {"most_made", effort.energy_made},
                     {"most_taken", effort.energy_taken}};
   if (error)
     json["indicated_error"] = {{"relative", error->relative},
@@ -175,8 +175,7 @@ void print_summary(const SimulateCommand& command, const Scene& scene, const Sim
       {"residual", "at most " + shown(effort.worst_residual, 2) + ", asked for " + shown(options.steps.tolerance)}};
   if (run.halved_steps > 0) rows.emplace_back("halved steps", shown_count(run.halved_steps) + " were taken in parts");
   rows.emplace_back("energy balance", "the integrator made at most " + shown_percent(effort.energy_made) +
-                                          " of what loads brought, took at most " +
-                                          shown_percent(effort.energy_taken));
+                                          " of what loads brought, took at most " + shown_percent(effort.energy_taken));
   if (error)
     rows.emplace_back("indicated error", shown_percent(error->relative) + ", at worst " + shown_percent(error->worst) +
                                              " at t = " + shown(error->worst_time, 3) + " s");
@@ -249,9 +248,9 @@ void SimulateCommand::run() const {
          std::to_string(result.errors.size()) +
          " states are larger than what forces were fitted to; they may be wrong by more than is indicated");
   if (effort.energy_made > 0.01)
-    warn(
-        "the integrator, " + options.integrator.name + ", made " + shown_percent(effort.energy_made) +
-        " of energy that no load brought; a shorter --step, or --integrator average-vector-field or tr-bdf2, may help");
+    warn("the integrator, " + options.integrator.name + ", made " + shown_percent(effort.energy_made) +
+         " of energy that no load brought; a shorter --step, or --integrator average-vector-field or backward-euler, "
+         "may help");
   if (effort.missed > 0)
     warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) + " steps missed the tolerance " +
          shown(options.steps.tolerance) + " (worst residual " + shown(effort.worst_residual, 2) +

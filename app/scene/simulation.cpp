@@ -7,6 +7,7 @@
 #include <reduction/system/error_estimator.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -32,6 +33,8 @@ class SceneLoads {
         Load unit = system.project(loads);
         columns_.push_back(std::move(unit.force));
         if (x == 0) stiffness_.push_back(std::move(unit.stiffness));
+        if (x == 0) springs_.push_back({std::move(unit.springs), {}});
+        springs_.back().unit_targets[x] = x == 0 ? springs_.back().all.targets : std::move(unit.springs.targets);
       }
     }
     for (const TimedForce& timed : scene.others) {
@@ -53,14 +56,17 @@ class SceneLoads {
       shares.insert(shares.end(), displacement.begin(), displacement.end());
     }
     for (const TimedForce& timed : scene_.others) active.push_back(timed.when.contains(t));
-    if (shares != shares_) {
+    const bool moved = shares != shares_;
+    if (moved) {
       load_.force.setZero();
       for (std::size_t k = 0; k < columns_.size(); ++k)
         if (shares[k] != 0) load_.force += shares[k] * columns_[k];
       shares_ = std::move(shares);
     }
+    const bool changed = active != active_;
     if (active != active_) {
       load_.stiffness = {};
+      load_.springs = stacked(active);
       for (std::size_t k = 0; k < stiffness_.size(); ++k)
         if (active[k] && stiffness_[k].size() > 0) {
           if (load_.stiffness.size() == 0)
@@ -73,13 +79,78 @@ class SceneLoads {
         if (active[stiffness_.size() + k]) load_.others.push_back(others_[k]);
       active_ = std::move(active);
     }
+    if ((moved || changed) && !load_.springs.empty()) set_targets();
     return load_;
   }
 
  private:
+  /// A group of springs in the unknowns, and its targets at a displacement of one along each axis.
+  struct Group {
+    SystemSprings<MatrixType> all;
+    std::array<Vector, 3> unit_targets;
+  };
+
+  /// Those that act, in one.
+  SystemSprings<MatrixType> stacked(const std::vector<bool>& active) const {
+    std::vector<const SystemSprings<MatrixType>*> parts;
+    Index rows = 0;
+    for (std::size_t k = 0; k < springs_.size(); ++k)
+      if (active[k] && !springs_[k].all.empty()) {
+        parts.push_back(&springs_[k].all);
+        rows += parts.back()->targets.size();
+      }
+    if (parts.empty()) return {};
+    SystemSprings<MatrixType> result{below_one_another(parts, rows), Vector(rows), Vector::Zero(rows)};
+    Index row = 0;
+    for (const SystemSprings<MatrixType>* part : parts) {
+      result.stiffness.segment(row, part->stiffness.size()) = part->stiffness;
+      row += part->stiffness.size();
+    }
+    return result;
+  }
+  static Matrix below_one_another(const std::vector<const SystemSprings<Matrix>*>& parts, Index rows) {
+    Matrix result(rows, parts.front()->rows.cols());
+    Index row = 0;
+    for (const SystemSprings<Matrix>* part : parts) {
+      result.middleRows(row, part->rows.rows()) = part->rows;
+      row += part->rows.rows();
+    }
+    return result;
+  }
+  static SparseMatrix below_one_another(const std::vector<const SystemSprings<SparseMatrix>*>& parts, Index rows) {
+    std::vector<Eigen::Triplet<double>> entries;
+    Index row = 0;
+    for (const SystemSprings<SparseMatrix>* part : parts) {
+      for (Index j = 0; j < part->rows.cols(); ++j)
+        for (SparseMatrix::InnerIterator it(part->rows, j); it; ++it)
+          entries.emplace_back(row + it.row(), j, it.value());
+      row += part->rows.rows();
+    }
+    SparseMatrix result(rows, parts.front()->rows.cols());
+    result.setFromTriplets(entries.begin(), entries.end());
+    return result;
+  }
+
+  /// Where the springs that act pull to now.
+  void set_targets() {
+    Index row = 0;
+    for (std::size_t k = 0; k < springs_.size(); ++k) {
+      const Index count = springs_[k].all.targets.size();
+      if (!active_[k] || count == 0) continue;
+      auto targets = load_.springs.targets.segment(row, count);
+      targets.setZero();
+      for (std::size_t x = 0; x < 3; ++x) {
+        const double share = shares_[scene_.loads.size() + 3 * k + x];
+        if (share != 0) targets += share * springs_[k].unit_targets[x];
+      }
+      row += count;
+    }
+  }
+
   const Scene& scene_;
   std::vector<Vector> columns_;        // of each load, then three of each group of springs: at unit displacements
   std::vector<MatrixType> stiffness_;  // of each group of springs
+  std::vector<Group> springs_;
   std::vector<std::shared_ptr<const OutsideTerm<MatrixType>>> others_;
   std::vector<double> shares_;
   std::vector<bool> active_;  // of springs, then of others
@@ -245,7 +316,7 @@ std::string reason_to_end(const Simulation& run, const SimulationOptions& option
          shown(run.refused.work) + " J of work: energy from nothing, which " + options.integrator.name +
          " makes in such large motions. A shorter --step, --integrator average-vector-field, which keeps the energy, "
          "or "
-         "tr-bdf2, which never makes any of its own, may help";
+         "backward-euler, which damps most, may help";
 }
 
 Effort::Effort(const Simulation& run) {

@@ -270,106 +270,107 @@ class FullSystem {
         pattern_.scatter(owner, owners, begin, end, reinterpret_cast<const double*>(buffer.data()), values);
       });
     }
+  }
 
-    void add_springs(const std::vector<PointSpring>& springs, SystemLoad<SparseMatrix>& load) const {
-      const Index count = 3 * static_cast<Index>(springs.size());
-      SystemSprings<SparseMatrix> sum{SparseMatrix(count, dim()), Vector(count), Vector(count)};
-      std::vector<Eigen::Triplet<double>> rows, diagonal;
-      for (Index row = 0; const PointSpring& spring : springs) {
-        const Index f = numbering_.free_index(spring.node);  // held nodes do not move, their rows stay empty
-        for (int c = 0; c < 3; ++c, ++row) {
-          sum.stiffness[row] = spring.stiffness;
-          sum.targets[row] = spring.displacement[c];
-          if (f < 0) continue;
-          rows.emplace_back(row, 3 * f + c, 1);
-          diagonal.emplace_back(3 * f + c, 3 * f + c, spring.stiffness);
-        }
+  void add_springs(const std::vector<PointSpring>& springs, SystemLoad<SparseMatrix>& load) const {
+    const Index count = 3 * static_cast<Index>(springs.size());
+    SystemSprings<SparseMatrix> sum{SparseMatrix(count, dim()), Vector(count), Vector(count)};
+    std::vector<Eigen::Triplet<double>> rows, diagonal;
+    for (Index row = 0; const PointSpring& spring : springs) {
+      const Index f = numbering_.free_index(spring.node);  // held nodes do not move, their rows stay empty
+      for (int c = 0; c < 3; ++c, ++row) {
+        sum.stiffness[row] = spring.stiffness;
+        sum.targets[row] = spring.displacement[c];
+        if (f < 0) continue;
+        rows.emplace_back(row, 3 * f + c, 1);
+        diagonal.emplace_back(3 * f + c, 3 * f + c, spring.stiffness);
       }
-      if (diagonal.empty()) return;
-      sum.rows.setFromTriplets(rows.begin(), rows.end());
-      load.stiffness.resize(dim(), dim());
-      load.stiffness.setFromTriplets(diagonal.begin(), diagonal.end());
-      load.force += sum.pull_of_targets();
-      load.springs = std::move(sum);
     }
+    if (diagonal.empty()) return;
+    sum.rows.setFromTriplets(rows.begin(), rows.end());
+    load.stiffness.resize(dim(), dim());
+    load.stiffness.setFromTriplets(diagonal.begin(), diagonal.end());
+    load.force += sum.pull_of_targets();
+    load.springs = std::move(sum);
+  }
 
-    template <bool with_energies>
-    void evaluate(MatrixIn U, MatrixOut F, double* energies) const {
-      require_size("U.rows()", U.rows(), dim());
-      require_size("F.rows()", F.rows(), dim());
-      require_size("F.cols()", F.cols(), U.cols());
-      constexpr Index pieces = 2;  // sums that are kept apart, whatever the number of threads
-      const Index m = model_->num_components(), unknowns = num_nodes() * node_dim;
-      static thread_local std::vector<Pack> buffer;  // of a calling thread, kept: see full_force()
-      buffer.resize((1 + pieces) * unknowns);
-      Pack* const u = buffer.data();
-      const auto sums = [&](Index piece) { return u + (1 + piece) * unknowns; };
-      for (Index first = 0; first < U.cols(); first += Pack::size) {
-        const Index count = std::min<Index>(Pack::size, U.cols() - first);
-        for (const Index v : numbering_.fixed_nodes()) std::fill_n(u + v * node_dim, node_dim, Pack(0.0));
-        for (int k = 0; k < Pack::size; ++k) {  // lanes past the end repeat the last state
-          const double* const from = U.col(first + std::min<Index>(k, count - 1)).data();
-          for (Index v = 0; v < numbering_.num_free(); ++v)
-            for (int c = 0; c < node_dim; ++c)
-              u[numbering_.free_nodes()[v] * node_dim + c].set(k, from[v * node_dim + c]);
-        }
-        std::array<Pack, pieces> e;
-        parallel_for(pieces, [&](Index piece) {
-          Pack* const f = sums(piece);
-          std::fill_n(f, unknowns, Pack(0.0));
-          Pack sum(0.0);
-          const Index end = m * (piece + 1) / pieces;
-          for (Index i = m * piece / pieces; i < end; ++i) {
-            const Index* const soon = stencils_.data() + std::min(i + 6, end - 1) * Model::stencil_size;
-            for (int a = 0; a < Model::stencil_size; ++a)
-              for (int c = 0; c < node_dim; ++c) {
-                __builtin_prefetch(u + soon[a] * node_dim + c);
-                __builtin_prefetch(f + soon[a] * node_dim + c, 1);
-              }
-            const TermPack<Model> term(model_, i);
-            const Index* nodes = stencils_.data() + i * Model::stencil_size;
-            Local<Model::local_dofs, Pack> u_i;
-            for (int a = 0; a < Model::stencil_size; ++a)
-              for (int c = 0; c < node_dim; ++c) u_i[a * node_dim + c] = u[nodes[a] * node_dim + c];
-            const Local<Model::local_dofs, Pack> f_i = term.force(u_i);
-            for (int a = 0; a < Model::stencil_size; ++a)
-              for (int c = 0; c < node_dim; ++c) f[nodes[a] * node_dim + c] += f_i[a * node_dim + c];
-            if constexpr (with_energies) sum += term.energy(u_i);
-          }
-          e[piece] = sum;
-        });
-        for (int k = 0; k < count; ++k) {
-          double* const to = F.col(first + k).data();
-          for (Index v = 0; v < numbering_.num_free(); ++v)
+  template <bool with_energies>
+  void evaluate(MatrixIn U, MatrixOut F, double* energies) const {
+    require_size("U.rows()", U.rows(), dim());
+    require_size("F.rows()", F.rows(), dim());
+    require_size("F.cols()", F.cols(), U.cols());
+    constexpr Index pieces = 2;  // sums that are kept apart, whatever the number of threads
+    const Index m = model_->num_components(), unknowns = num_nodes() * node_dim;
+    static thread_local std::vector<Pack> buffer;  // of a calling thread, kept: see full_force()
+    buffer.resize((1 + pieces) * unknowns);
+    Pack* const u = buffer.data();
+    const auto sums = [&](Index piece) { return u + (1 + piece) * unknowns; };
+    for (Index first = 0; first < U.cols(); first += Pack::size) {
+      const Index count = std::min<Index>(Pack::size, U.cols() - first);
+      for (const Index v : numbering_.fixed_nodes()) std::fill_n(u + v * node_dim, node_dim, Pack(0.0));
+      for (int k = 0; k < Pack::size; ++k) {  // lanes past the end repeat the last state
+        const double* const from = U.col(first + std::min<Index>(k, count - 1)).data();
+        for (Index v = 0; v < numbering_.num_free(); ++v)
+          for (int c = 0; c < node_dim; ++c)
+            u[numbering_.free_nodes()[v] * node_dim + c].set(k, from[v * node_dim + c]);
+      }
+      std::array<Pack, pieces> e;
+      parallel_for(pieces, [&](Index piece) {
+        Pack* const f = sums(piece);
+        std::fill_n(f, unknowns, Pack(0.0));
+        Pack sum(0.0);
+        const Index end = m * (piece + 1) / pieces;
+        for (Index i = m * piece / pieces; i < end; ++i) {
+          const Index* const soon = stencils_.data() + std::min(i + 6, end - 1) * Model::stencil_size;
+          for (int a = 0; a < Model::stencil_size; ++a)
             for (int c = 0; c < node_dim; ++c) {
-              const Index row = numbering_.free_nodes()[v] * node_dim + c;
-              to[v * node_dim + c] = sums(0)[row][k] + sums(1)[row][k];
+              __builtin_prefetch(u + soon[a] * node_dim + c);
+              __builtin_prefetch(f + soon[a] * node_dim + c, 1);
             }
-          if constexpr (with_energies) energies[first + k] = e[0][k] + e[1][k];
+          const TermPack<Model> term(model_, i);
+          const Index* nodes = stencils_.data() + i * Model::stencil_size;
+          Local<Model::local_dofs, Pack> u_i;
+          for (int a = 0; a < Model::stencil_size; ++a)
+            for (int c = 0; c < node_dim; ++c) u_i[a * node_dim + c] = u[nodes[a] * node_dim + c];
+          const Local<Model::local_dofs, Pack> f_i = term.force(u_i);
+          for (int a = 0; a < Model::stencil_size; ++a)
+            for (int c = 0; c < node_dim; ++c) f[nodes[a] * node_dim + c] += f_i[a * node_dim + c];
+          if constexpr (with_energies) sum += term.energy(u_i);
         }
+        e[piece] = sum;
+      });
+      for (int k = 0; k < count; ++k) {
+        double* const to = F.col(first + k).data();
+        for (Index v = 0; v < numbering_.num_free(); ++v)
+          for (int c = 0; c < node_dim; ++c) {
+            const Index row = numbering_.free_nodes()[v] * node_dim + c;
+            to[v * node_dim + c] = sums(0)[row][k] + sums(1)[row][k];
+          }
+        if constexpr (with_energies) energies[first + k] = e[0][k] + e[1][k];
       }
     }
+  }
 
-    Local<Model::local_dofs, Pack> gather(VectorIn full, Index p) const {
-      Local<Model::local_dofs, Pack> u;
-      const PackIndices lanes = consecutive_components(p * Pack::size, model_->num_components());
-      for (int k = 0; k < Pack::size; ++k) {
-        const Index* nodes = stencils_.data() + lanes[k] * Model::stencil_size;
-        for (int a = 0; a < Model::stencil_size; ++a)
-          for (int c = 0; c < node_dim; ++c) u[a * node_dim + c].set(k, full[nodes[a] * node_dim + c]);
-      }
-      return u;
+  Local<Model::local_dofs, Pack> gather(VectorIn full, Index p) const {
+    Local<Model::local_dofs, Pack> u;
+    const PackIndices lanes = consecutive_components(p * Pack::size, model_->num_components());
+    for (int k = 0; k < Pack::size; ++k) {
+      const Index* nodes = stencils_.data() + lanes[k] * Model::stencil_size;
+      for (int a = 0; a < Model::stencil_size; ++a)
+        for (int c = 0; c < node_dim; ++c) u[a * node_dim + c].set(k, full[nodes[a] * node_dim + c]);
     }
+    return u;
+  }
 
-    std::shared_ptr<const Model> model_;
-    Vector nodal_mass_;
-    NodeNumbering numbering_;
-    Vector mass_;
-    std::vector<TermPack<Model>> packs_;
-    std::vector<Index> stencils_;
-    NodeIncidence incidence_;
-    NodeBlockPattern pattern_;
-    SparseMatrix rest_stiffness_;
-  };
+  std::shared_ptr<const Model> model_;
+  Vector nodal_mass_;
+  NodeNumbering numbering_;
+  Vector mass_;
+  std::vector<TermPack<Model>> packs_;
+  std::vector<Index> stencils_;
+  NodeIncidence incidence_;
+  NodeBlockPattern pattern_;
+  SparseMatrix rest_stiffness_;
+};
 
 }  // namespace supple

@@ -6,7 +6,7 @@
 
 namespace supple {
 
-/// Elastic forces and the pull of a load, averaged over the straight way of a step from its start to u: see mean_force().
+/// Elastic forces and the net pull of a load, averaged over the straight way of a step from its start to u: see mean_force().
 template <DynamicalSystem System>
 struct MeanForces {
   using MatrixType = typename System::MatrixType;
@@ -18,15 +18,14 @@ struct MeanForces {
   double energy(VectorIn u) const {
     double sum = mean_force_potential(system, start, u);
     if (load->has_pull())
-      for (const double tau : gauss_points) sum += 0.5 / tau * load->pull_energy(at(tau, u));
+      for (const double tau : gauss_points) sum += 0.5 / tau * load->net_pull_energy(at(tau, u));
     return sum;
   }
-  void force(VectorIn u, VectorOut f) const {
-    mean_force(system, start, u, f);
-    if (!load->has_pull()) return;
-    Vector pull = Vector::Zero(u.size());
-    for (const double tau : gauss_points) load->add_pull(at(tau, u), pull);
-    f += 0.5 * pull;
+  void elastic(VectorIn u, VectorOut f) const { mean_force(system, start, u, f); }
+  void add_pull(VectorIn u, VectorOut pull) const {
+    Vector sum = Vector::Zero(u.size());
+    for (const double tau : gauss_points) load->add_net_pull(at(tau, u), sum);
+    pull += 0.5 * sum;
   }
   void stiffness(VectorIn u, MatrixType& K) const {
     mean_stiffness(system, start, u, K);

@@ -1,6 +1,6 @@
 #pragma once
-/// \file Backward differences: implicit Euler, BDF2, and the composite of trapezoidal rule and BDF2. They never make
-/// energy of their own, and what is too fast for the step dies out.
+/// \file Backward differences: implicit Euler, BDF2, and the composite of trapezoidal rule and BDF2. In linear
+/// systems they take energy, and what is too fast for the step dies out.
 
 #include <physics/time/implicit_step.hpp>
 

@@ -43,7 +43,7 @@ class EnergyAccount {
   /// \param load  amid the step.  \param before, after  its ends.
   void add_step(const SystemLoad<MatrixType>& load, const State& before, const State& after) {
     const Vector du = after.u - before.u;
-    at_.work += load.force.dot(du) - pull_work(load, before.u, after.u);
+    at_.work += load.dead_force().dot(du) - pull_work(load, before.u, after.u);
     at_.damped += damping_work(du, after.time - before.time);
     at_.kinetic = kinetic_energy(after.v);
     at_.elastic = system_->energy(after.u);
@@ -56,9 +56,9 @@ class EnergyAccount {
   /// Of what springs and other forces hold against a step.
   static double pull_work(const SystemLoad<MatrixType>& load, VectorIn u_0, VectorIn u_1) {
     if (!load.has_pull()) return 0;
-    if (load.has_potential()) return load.pull_energy(u_1) - load.pull_energy(u_0);
+    if (load.has_potential()) return load.net_pull_energy(u_1) - load.net_pull_energy(u_0);
     Vector pull = Vector::Zero(u_0.size());
-    load.add_pull(0.5 * (u_0 + u_1), pull);
+    load.add_net_pull(0.5 * (u_0 + u_1), pull);
     return pull.dot(u_1 - u_0);
   }
   /// v̄ᵀ D v̄ h at the mean velocity v̄ = Δu / h.

@@ -13,14 +13,15 @@ namespace supple {
 struct StepOptions {
   RayleighDamping damping = {};
   NonlinearSolver solver = Newton{};
-  /// ‖M a + D v + f(u) − f_ext‖ against the largest of these terms, Euclidean norms; the pull −k u of springs
-  /// counts with f(u), the pull k u* of their targets with f_ext. What remains of these terms by rounding
-  /// alone counts as converged: a body at rest somewhere has no other forces.
+  /// ‖M a + D v + f(u) − f_ext‖ against the largest of ‖M a‖, ‖D v‖, ‖f(u)‖, the dead forces and what springs and other
+  /// outside forces exert together, k (u − u*), Euclidean norms: never against k u and k u*, which stiff springs make as
+  /// large as they like. What remains of all terms by rounding alone counts as converged: a body at rest somewhere has no
+  /// other forces.
   double tolerance = 1e-6;
   Index max_iterations = 60;  ///< of the nonlinear solver in a step
 };
 
-/// Elastic forces and the pull of a load, where a step ends up: at u.
+/// Elastic forces and the net pull of a load, where a step ends up: at u.
 template <DynamicalSystem System>
 struct ForcesAtOnce {
   using MatrixType = typename System::MatrixType;
@@ -28,11 +29,9 @@ struct ForcesAtOnce {
   const System& system;
   const SystemLoad<MatrixType>* load = nullptr;
 
-  double energy(VectorIn u) const { return system.energy(u) + load->pull_energy(u); }
-  void force(VectorIn u, VectorOut f) const {
-    system.force(u, f);
-    load->add_pull(u, f);
-  }
+  double energy(VectorIn u) const { return system.energy(u) + load->net_pull_energy(u); }
+  void elastic(VectorIn u, VectorOut f) const { system.force(u, f); }
+  void add_pull(VectorIn u, VectorOut pull) const { load->add_net_pull(u, pull); }
   void stiffness(VectorIn u, MatrixType& K) const {
     system.stiffness(u, K);
     load->add_stiffness(u, K);
@@ -42,7 +41,7 @@ struct ForcesAtOnce {
 
 /// M a + D v + f(u) = f_ext for accelerations and velocities that are affine in the unknown u, a = c_m (u − ũ_m) and
 /// v = ṽ + c_d (u − ũ_d), as a smooth objective:
-///   φ(u) = ½ c_m ‖u − ũ_m‖²_M + ½ c_d ‖u − ũ_d‖²_D + ṽᵀ D u + E(u) + ½ uᵀ k u − f_extᵀ u.
+///   φ(u) = ½ c_m ‖u − ũ_m‖²_M + ½ c_d ‖u − ũ_d‖²_D + ṽᵀ D u + E(u) + ½ ‖u − u*‖²_k − f_deadᵀ u.
 /// So a step is the minimiser of an incremental potential, and Newton's line search is safe.
 /// \tparam Forces  what of the object's forces and the load's pull a step balances: ForcesAtOnce, or MeanForces.
 template <DynamicalSystem System, typename Forces = ForcesAtOnce<System>>
@@ -58,14 +57,16 @@ class StepObjective {
         tolerance_(options.tolerance),
         c_m_(c_m),
         c_d_(c_d),
-        rounding_(8 * std::numeric_limits<double>::epsilon() *
-                  (c_m_ * system.mass() + system.rest_stiffness().diagonal())) {}
+        rounding_of_system_(rounding * (c_m_ * system.mass() + system.rest_stiffness().diagonal())) {}
 
   Forces& forces() { return forces_; }
 
   /// Where the step comes from. \param load  must stay during the solve.
   void begin(const SystemLoad<MatrixType>& load, Vector u_m, Vector u_d, VectorIn v_tilde) {
-    load_ = forces_.load = &load;
+    forces_.load = &load;
+    dead_force_ = load.dead_force();
+    rounding_ = rounding_of_system_;
+    if (load.has_stiffness()) rounding_ += rounding * load.stiffness.diagonal();
     u_m_ = std::move(u_m);
     if (!damped()) return;
     u_d_ = std::move(u_d);
@@ -74,18 +75,24 @@ class StepObjective {
 
   Vector acceleration(VectorIn u) const { return c_m_ * (u - u_m_); }  ///< a
 
-  bool has_value() const { return load_->has_potential(); }
+  bool has_value() const { return forces_.load->has_potential(); }
   double value(VectorIn u) const {
     const Vector du = u - u_m_;
-    const double phi = 0.5 * c_m_ * du.dot(system_.mass().cwiseProduct(du)) + forces_.energy(u) - load_->force.dot(u);
+    const double phi = 0.5 * c_m_ * du.dot(system_.mass().cwiseProduct(du)) + forces_.energy(u) - dead_force_.dot(u);
     return damped() ? phi + damping_value(u) : phi;
   }
   void gradient(VectorIn u, VectorOut g) {
-    forces_.force(u, g);
-    scale_ = std::max(g.norm(), load_->force.norm());
+    forces_.elastic(u, g);
+    scale_ = std::max(g.norm(), dead_force_.norm());
+    if (forces_.load->has_pull()) {
+      Vector pull = Vector::Zero(u.size());
+      forces_.add_pull(u, pull);
+      scale_ = std::max(scale_, pull.norm());
+      g += pull;
+    }
     const Vector inertia = c_m_ * system_.mass().cwiseProduct(u - u_m_);
     scale_ = std::max({scale_, inertia.norm(), rounding_.cwiseProduct(u).norm() / tolerance_});
-    g += inertia - load_->force;
+    g += inertia - dead_force_;
     if (!damped()) return;
     const Vector damping = damping_force_ + c_d_ * damp(u - u_d_);
     scale_ = std::max(scale_, damping.norm());
@@ -125,9 +132,9 @@ class StepObjective {
   Forces forces_;
   RayleighDamping damping_;
   double tolerance_, c_m_, c_d_;
-  Vector rounding_;  // of the forces, relative to the displacements
-  const SystemLoad<MatrixType>* load_ = nullptr;
-  Vector u_m_, u_d_, damping_force_;
+  static constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+  Vector rounding_of_system_, rounding_;  // of the forces, relative to the displacements; with springs
+  Vector dead_force_, u_m_, u_d_, damping_force_;
   double scale_ = 0;
 };
 
