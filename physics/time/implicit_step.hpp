@@ -73,6 +73,9 @@ class StepObjective {
     damping_force_ = damp(v_tilde);
   }
 
+  /// A constant force c [N] beside f(u), for the step that began.
+  void add_force(VectorIn c) { dead_force_ -= c; }
+
   Vector acceleration(VectorIn u) const { return c_m_ * (u - u_m_); }  ///< a
 
   bool has_value() const { return forces_.load->has_potential(); }
