@@ -52,6 +52,9 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
                                    : "full systems (--full); reduced ones run with bfgs, broyden or newton"));
   if (command.full && command.precision) throw InputError("--precision is for reduced systems, not for --full");
   SimulationOptions options = complete(scene, model);
+  if (energy_behaviour(options.integrator) == EnergyBehaviour::BoundedForShortSteps)
+    warn("with 2 beta < gamma, " + options.integrator.name +
+         " lets motions grow that are fast against the step; beta = (gamma + 0.5)^2 / 4 does not");
   if (command.precision) options.precision = value_named<RowPrecision>(*command.precision, "precision");
   return command.full ? for_full_system(options) : options;
 }

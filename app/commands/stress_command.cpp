@@ -114,7 +114,7 @@ void StressCommand::run() const {
   const ReducedModel reduced = load_model(model);
   std::vector<std::string> methods = integrators;
   if (methods.empty()) methods = supple::integrators().names();
-  for (const std::string& method : methods) check_integrator(Choice::parse(method));
+  for (const std::string& method : methods) (void)energy_behaviour(Choice::parse(method));
   std::vector<double> steps = steps_per_period;
   if (steps.empty()) steps = brief ? std::vector<double>{60, 10} : std::vector<double>{1000, 300, 100, 60, 30, 10};
   std::vector<Hardship> wanted;

@@ -212,7 +212,7 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
   if (const auto integrator = file.object_if("integrator")) {
     scene.integrator = read_choice(*integrator, "method", integrators());
     try {
-      check_integrator(*scene.integrator);
+      (void)energy_behaviour(*scene.integrator);
     } catch (const std::invalid_argument& error) {
       integrator->fail("method", "is refused: " + std::string(error.what()));
     }

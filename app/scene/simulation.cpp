@@ -279,7 +279,7 @@ SimulationOptions complete(Scene& scene, const ReducedModel& model) {
   options.num_steps = static_cast<Index>(steps);
   options.every = scene.every.value_or((options.num_steps + 99) / 100);
   if (scene.integrator) options.integrator = *scene.integrator;
-  check_integrator(options.integrator);
+  (void)energy_behaviour(options.integrator);  // or it is refused
   options.steps.damping = scene.damping.value_or(damping(model.body));
   options.steps.solver = scene.solver.value_or(Bfgs{});
   if (!is_step_solver_for(false, options.steps.solver)) options.steps.solver = Bfgs{};

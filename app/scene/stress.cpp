@@ -1,5 +1,5 @@
-#include <app/scene/stress.hpp>
 #include <app/report/terminal.hpp>
+#include <app/scene/stress.hpp>
 #include <app/scene/surface.hpp>
 
 #include <Eigen/Geometry>

@@ -28,9 +28,9 @@ struct NodeAtRest {
 
 }  // namespace
 
-void check_integrator(const Choice& choice) {
+EnergyBehaviour energy_behaviour(const Choice& choice) {
   const AnySystem<Matrix> system(std::make_shared<const NodeAtRest>());
-  (void)make_integrator(choice, system, 1, {});
+  return make_integrator(choice, system, 1, {}).energy_behaviour();
 }
 
 Registry<NamedIntegrator>& integrators() {

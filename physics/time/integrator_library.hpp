@@ -60,7 +60,8 @@ AnyIntegrator<AnySystem<Matrix>> make_integrator(const Choice&, const AnySystem<
 AnyIntegrator<AnySystem<SparseMatrix>> make_integrator(const Choice&, const AnySystem<SparseMatrix>&&, double,
                                                        const StepOptions&) = delete;
 
-/// \throws std::invalid_argument for a choice that no system could be integrated by: unknown, or with options out of range.
-void check_integrator(const Choice& choice);
+/// What a choice promises about energy.
+/// \throws std::invalid_argument for one that no system could be integrated by: unknown, or with options out of range.
+EnergyBehaviour energy_behaviour(const Choice& choice);
 
 }  // namespace supple

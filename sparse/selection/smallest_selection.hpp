@@ -11,8 +11,7 @@ namespace supple {
 /// `reached(selection)` holds: sizes are doubled until it does, then bisected; each run starts from the largest selection
 /// for which it did not. Seconds, iterations and columns evaluated are those of all runs together, the history that of the
 /// answer.
-/// \note about 2 log₂(size) runs of `select`. If
-/// none reaches it, the largest is returned, with the reason.
+/// \note about 2 log₂(size) runs of `select`. If none reaches it, the largest is returned, with the reason.
 template <typename S, FittingProblem P, std::predicate<const Selection&> Reached>
 Selection smallest_selection(const S& select, const P& problem, SelectionRequest request, const Reached& reached) {
   const Stopwatch stopwatch;

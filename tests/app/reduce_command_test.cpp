@@ -40,7 +40,9 @@ class ReduceCommandTest : public SuppleProcess {
     arguments.insert(arguments.end(), {"--json", "-"});
     const Outcome outcome = supple(arguments);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    if (!outcome.err.empty()) EXPECT_THAT(outcome.err, HasSubstr("leave a direction with"));
+    if (!outcome.err.empty()) {
+      EXPECT_THAT(outcome.err, HasSubstr("leave a direction with"));
+    }
     return outcome.json();
   }
   /// Removes and spoils each array of the model that a job makes, in turn.

@@ -121,6 +121,8 @@ TEST_F(SimulateCommandTest, TakesTheIntegratorOfTheSceneOrTheLine) {
       report({"simulate", "bar.supple", "--time", "0.3", "--integrator", "newmark:beta=0.25:gamma=0.5", "-o", "named"});
   EXPECT_EQ(named["integrator_options"]["beta"], "0.25");
   EXPECT_EQ(read("named/tracked.csv"), read("average/tracked.csv"));
+  EXPECT_THAT(supple({"simulate", "bar.supple", "--time", "0.1", "--integrator", "newmark:beta=0.1"}).err,
+              HasSubstr("2 beta < gamma"));
   // what is too fast for the step dies out
   const json damped = report(
       {"simulate", "bar.supple", "--time", "0.3", "--integrator", "generalized-alpha:rho_infinity=0", "-o", "damped"});

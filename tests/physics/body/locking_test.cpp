@@ -22,8 +22,11 @@ constexpr double length = 1, height = 0.125, young = 1e5, density = 1000;
 double softest(const Body& body) {
   return with_force_model(body, [&]<typename Model>(const std::shared_ptr<const Model>& model) {
     const FullSystem<Model> system(model, nodal_mass(body), fixed_nodes(body));
-    const EigenPairs pairs = smallest_eigenpairs(system.rest_stiffness(), system.mass(), Matrix(system.dim(), 0),
-                                                 {.num_modes = 1, .tolerance = 1e-8});
+    EigenOptions options;
+    options.num_modes = 1;
+    options.tolerance = 1e-8;
+    const EigenPairs pairs =
+        smallest_eigenpairs(system.rest_stiffness(), system.mass(), Matrix(system.dim(), 0), options);
     return std::sqrt(pairs.omega_squared[0]);
   });
 }
@@ -50,7 +53,9 @@ TEST(Locking, IsOfLinearTetsAndHexahedraOnly) {
                  tets = softest(bar<LinearTet>(poisson));
     EXPECT_NEAR(quadratic, beam(), 0.04 * beam());
     EXPECT_GT(tets, hexahedra);
-    if (poisson == 0.3) EXPECT_LT(hexahedra, 1.1 * beam());
+    if (poisson == 0.3) {
+      EXPECT_LT(hexahedra, 1.1 * beam());
+    }
     if (poisson == 0.4999) {
       EXPECT_GT(tets, 2 * beam());
       EXPECT_GT(hexahedra, 2 * beam());
