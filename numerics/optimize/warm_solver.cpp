@@ -96,8 +96,7 @@ SolveReport WarmSolver<MatrixType>::run(const Nlopt& nlopt, Objective& objective
 template <typename MatrixType>
 void WarmSolver<MatrixType>::prepare(Objective& objective) {
   if (ready_) return;
-  if (!rest_.factorize_at_rest(objective, solver_))
-    throw SolverError("the system matrix at rest is not finite");
+  if (!rest_.factorize_at_rest(objective, solver_)) throw SolverError("the system matrix at rest is not finite");
   if constexpr (std::same_as<MatrixType, Matrix>)
     if (std::holds_alternative<Nlopt>(method_)) rest_factor_ = rest_.matrix().llt().matrixL();
   steps_.clear();
