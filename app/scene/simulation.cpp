@@ -7,7 +7,6 @@
 #include <reduction/system/error_estimator.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 
@@ -15,145 +14,71 @@ namespace supple {
 
 namespace {
 
-/// A scene's loads in the unknowns of a system. Everything is projected once; what changes over time is the
-/// sum.
+/// A scene's loads in the unknowns of a system. Loads are projected once, springs when others of them begin to act; what
+/// else changes over time is how much of each there is, and where springs pull to.
 template <typename MatrixType>
 class SceneLoads {
   using Load = SystemLoad<MatrixType>;
 
  public:
+  /// \param system, scene  must outlive the loads.
   SceneLoads(const AnySystem<MatrixType>& system, const Scene& scene)
-      : scene_(scene), load_{Vector::Zero(system.dim()), {}} {
+      : system_(system), scene_(scene), active_(scene.springs.size() + scene.others.size()) {
+    load_.force.setZero(system.dim());
     for (const TimedLoads& timed : scene.loads) columns_.push_back(system.project(timed.loads).force);
-    for (const TimedSprings& timed : scene.springs) {
-      Loads loads;
-      for (const auto& [node, stiffness] : timed.springs) loads.springs.push_back({node, stiffness, Point::Zero()});
-      for (int x = 0; x < 3; ++x) {
-        for (PointSpring& spring : loads.springs) spring.displacement = Point::Unit(x);
-        Load unit = system.project(loads);
-        columns_.push_back(std::move(unit.force));
-        if (x == 0) stiffness_.push_back(std::move(unit.stiffness));
-        if (x == 0) springs_.push_back({std::move(unit.springs), {}});
-        springs_.back().unit_targets[x] = x == 0 ? springs_.back().all.targets : std::move(unit.springs.targets);
-      }
-    }
     for (const TimedForce& timed : scene.others) {
       Loads loads;
       loads.others.push_back(timed.force);
       others_.push_back(system.project(loads).others.front());
     }
-    active_.resize(scene.springs.size() + scene.others.size());
   }
 
   const Load& at(double t) {
-    std::vector<double> shares;
-    shares.reserve(columns_.size());
-    for (const TimedLoads& timed : scene_.loads) shares.push_back(timed.when.share(t));
+    std::vector<double> shares, targets;
     std::vector<bool> active;
+    for (const TimedLoads& timed : scene_.loads) shares.push_back(timed.when.share(t));
     for (const TimedSprings& timed : scene_.springs) {
       active.push_back(timed.when.contains(t));
+      if (!active.back()) continue;
       const Point displacement = timed.when.share(t) * timed.displacement(t);
-      shares.insert(shares.end(), displacement.begin(), displacement.end());
+      for (std::size_t k = 0; k < timed.springs.size(); ++k)
+        targets.insert(targets.end(), displacement.begin(), displacement.end());
     }
     for (const TimedForce& timed : scene_.others) active.push_back(timed.when.contains(t));
-    const bool moved = shares != shares_;
-    if (moved) {
-      load_.force.setZero();
-      for (std::size_t k = 0; k < columns_.size(); ++k)
-        if (shares[k] != 0) load_.force += shares[k] * columns_[k];
-      shares_ = std::move(shares);
+    if (active == active_ && shares == shares_ && targets == targets_) return load_;
+    if (active != active_) take_hold(active);
+    load_.force.setZero();
+    for (std::size_t k = 0; k < columns_.size(); ++k)
+      if (shares[k] != 0) load_.force += shares[k] * columns_[k];
+    if (!load_.springs.empty()) {
+      load_.springs.targets = Eigen::Map<const Vector>(targets.data(), static_cast<Index>(targets.size()));
+      load_.force += load_.springs.pull_of_targets();
     }
-    const bool changed = active != active_;
-    if (active != active_) {
-      load_.stiffness = {};
-      load_.springs = stacked(active);
-      for (std::size_t k = 0; k < stiffness_.size(); ++k)
-        if (active[k] && stiffness_[k].size() > 0) {
-          if (load_.stiffness.size() == 0)
-            load_.stiffness = stiffness_[k];
-          else
-            load_.stiffness += stiffness_[k];
-        }
-      load_.others.clear();
-      for (std::size_t k = 0; k < others_.size(); ++k)
-        if (active[stiffness_.size() + k]) load_.others.push_back(others_[k]);
-      active_ = std::move(active);
-    }
-    if ((moved || changed) && !load_.springs.empty()) set_targets();
+    active_ = std::move(active);
+    shares_ = std::move(shares);
+    targets_ = std::move(targets);
     return load_;
   }
 
  private:
-  /// A group of springs in the unknowns, and its targets at a displacement of one along each axis.
-  struct Group {
-    SystemSprings<MatrixType> all;
-    std::array<Vector, 3> unit_targets;
-  };
-
-  /// Those that act, in one.
-  SystemSprings<MatrixType> stacked(const std::vector<bool>& active) const {
-    std::vector<const SystemSprings<MatrixType>*> parts;
-    Index rows = 0;
-    for (std::size_t k = 0; k < springs_.size(); ++k)
-      if (active[k] && !springs_[k].all.empty()) {
-        parts.push_back(&springs_[k].all);
-        rows += parts.back()->targets.size();
-      }
-    if (parts.empty()) return {};
-    SystemSprings<MatrixType> result{below_one_another(parts, rows), Vector(rows), Vector::Zero(rows)};
-    Index row = 0;
-    for (const SystemSprings<MatrixType>* part : parts) {
-      result.stiffness.segment(row, part->stiffness.size()) = part->stiffness;
-      row += part->stiffness.size();
-    }
-    return result;
-  }
-  static Matrix below_one_another(const std::vector<const SystemSprings<Matrix>*>& parts, Index rows) {
-    Matrix result(rows, parts.front()->rows.cols());
-    Index row = 0;
-    for (const SystemSprings<Matrix>* part : parts) {
-      result.middleRows(row, part->rows.rows()) = part->rows;
-      row += part->rows.rows();
-    }
-    return result;
-  }
-  static SparseMatrix below_one_another(const std::vector<const SystemSprings<SparseMatrix>*>& parts, Index rows) {
-    std::vector<Eigen::Triplet<double>> entries;
-    Index row = 0;
-    for (const SystemSprings<SparseMatrix>* part : parts) {
-      for (Index j = 0; j < part->rows.cols(); ++j)
-        for (SparseMatrix::InnerIterator it(part->rows, j); it; ++it)
-          entries.emplace_back(row + it.row(), j, it.value());
-      row += part->rows.rows();
-    }
-    SparseMatrix result(rows, parts.front()->rows.cols());
-    result.setFromTriplets(entries.begin(), entries.end());
-    return result;
+  /// Springs and other forces that act, wherever springs pull to.
+  void take_hold(const std::vector<bool>& active) {
+    Loads loads;
+    for (std::size_t k = 0; k < scene_.springs.size(); ++k)
+      if (active[k])
+        for (const auto& [node, stiffness] : scene_.springs[k].springs)
+          loads.springs.push_back({node, stiffness, Point::Zero()});
+    load_ = system_.project(loads);
+    for (std::size_t k = 0; k < others_.size(); ++k)
+      if (active[scene_.springs.size() + k]) load_.others.push_back(others_[k]);  // themselves, as solvers know them
   }
 
-  /// Where the springs that act pull to now.
-  void set_targets() {
-    Index row = 0;
-    for (std::size_t k = 0; k < springs_.size(); ++k) {
-      const Index count = springs_[k].all.targets.size();
-      if (!active_[k] || count == 0) continue;
-      auto targets = load_.springs.targets.segment(row, count);
-      targets.setZero();
-      for (std::size_t x = 0; x < 3; ++x) {
-        const double share = shares_[scene_.loads.size() + 3 * k + x];
-        if (share != 0) targets += share * springs_[k].unit_targets[x];
-      }
-      row += count;
-    }
-  }
-
+  const AnySystem<MatrixType>& system_;
   const Scene& scene_;
-  std::vector<Vector> columns_;        // of each load, then three of each group of springs: at unit displacements
-  std::vector<MatrixType> stiffness_;  // of each group of springs
-  std::vector<Group> springs_;
+  std::vector<Vector> columns_;  // of each load
   std::vector<std::shared_ptr<const OutsideTerm<MatrixType>>> others_;
-  std::vector<double> shares_;
-  std::vector<bool> active_;  // of springs, then of others
+  std::vector<bool> active_;              // of springs, then of others
+  std::vector<double> shares_, targets_;  // of each load; of the springs that act [m]
   Load load_;
 };
 
