@@ -250,7 +250,7 @@ void SimulateCommand::run() const {
     warn("from t = " + shown(error->first_beyond, 3) + " s on " + std::to_string(error->beyond_training) + " of " +
          std::to_string(result.errors.size()) +
          " states are larger than what forces were fitted to; they may be wrong by more than is indicated");
-  if (effort.energy_made > 0.01)
+  if (effort.makes_energy())
     warn("the integrator, " + options.integrator.name + ", made " + shown_percent(effort.energy_made) +
          " of energy that no load brought; a shorter --step, or --integrator average-vector-field or backward-euler, "
          "may help");

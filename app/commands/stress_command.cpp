@@ -27,7 +27,8 @@ std::string in_a_cell(const StressRun& run) {
     case Verdict::Sound:
       return run.halved > 0 ? "sound, halved" : "sound";
     case Verdict::Warned:
-      return run.energy_made > 0.01 ? "made " + shown_percent(run.energy_made, 2) : shown_count(run.missed) + " missed";
+      return run.energy_made > Effort::tolerated ? "made " + shown_percent(run.energy_made, 2)
+                                                 : shown_count(run.missed) + " missed";
     case Verdict::Stopped:
       return std::string(run.ending == Ending::NotFinite ? "not finite" : "stopped") + " at " +
              shown_percent(static_cast<double>(run.steps_done) / static_cast<double>(run.steps_asked), 2);
@@ -79,10 +80,17 @@ Json runs_json(const std::vector<StressRun>& runs) {
   return json;
 }
 
-/// The most energy that each integrator made in any motion that ran to its end, against the step.
+/// The most energy that an integrator made in any motion with such steps, but no less than is worth drawing [%].
+double most_made(const std::vector<StressRun>& runs, const std::string& integrator, double steps_per_period) {
+  double most = 1e-5;
+  for (const StressRun& run : runs)
+    if (run.integrator == integrator && run.steps_per_period == steps_per_period)
+      most = std::max(most, 100 * run.energy_made);
+  return most;
+}
+
 void draw_runs(const std::filesystem::path& path, const std::string& title, const std::vector<StressRun>& runs,
                const std::vector<std::string>& integrators, const std::vector<double>& steps_per_period) {
-  constexpr double least = 1e-5;  // percent; less is drawn there
   Plot plot{.title = title,
             .x = {.label = "steps a period",
                   .scale = Scale::Log,
@@ -91,19 +99,20 @@ void draw_runs(const std::filesystem::path& path, const std::string& title, cons
                   .ticks = steps_per_period},
             .y = {.label = "energy made, at worst [% of what loads brought]", .scale = Scale::Log},
             .series = {}};
-  for (const std::string& integrator : integrators) {
-    PlotSeries series{.name = integrator, .x = {}, .y = {}, .style = PlotStyle::LinePoints};
-    const Index count = static_cast<Index>(steps_per_period.size());
-    series.x = Eigen::Map<const Vector>(steps_per_period.data(), count);
-    series.y = Vector::Constant(count, least);
-    for (const StressRun& run : runs)
-      if (run.integrator == integrator)
-        for (Index k = 0; k < count; ++k)
-          if (steps_per_period[k] == run.steps_per_period) series.y[k] = std::max(series.y[k], 100 * run.energy_made);
-    plot.series.push_back(std::move(series));
-  }
+  const Vector steps = Eigen::Map<const Vector>(steps_per_period.data(), static_cast<Index>(steps_per_period.size()));
+  for (const std::string& integrator : integrators)
+    plot.series.push_back({.name = integrator,
+                           .x = steps,
+                           .y = steps.unaryExpr([&](double count) { return most_made(runs, integrator, count); }),
+                           .style = PlotStyle::LinePoints});
   const ExitGuard guard;
   draw_plot(path, plot);
+}
+
+std::vector<std::string> names_of_hardships() {
+  std::vector<std::string> names;
+  for (const HardshipInfo& hardship : all_hardships) names.emplace_back(hardship.name);
+  return names;
 }
 
 }  // namespace
@@ -119,7 +128,7 @@ void StressCommand::run() const {
   if (steps.empty()) steps = brief ? std::vector<double>{60, 10} : std::vector<double>{1000, 300, 100, 60, 30, 10};
   std::vector<Hardship> wanted;
   for (Hardship& hardship : supple::hardships(reduced))
-    if (hardships.empty() || std::ranges::find(hardships, hardship.name) != hardships.end())
+    if (hardships.empty() || std::ranges::find(hardships, hardship.info.name) != hardships.end())
       wanted.push_back(std::move(hardship));
   const OutputFolder folder(output);
 
@@ -129,7 +138,7 @@ void StressCommand::run() const {
   for (const Hardship& hardship : wanted)
     for (const std::string& method : methods)
       for (const double count : steps) {
-        tell(progress, hardship.name + ", " + method, static_cast<double>(runs.size()) / all);
+        tell(progress, std::string(hardship.info.name) + ", " + method, static_cast<double>(runs.size()) / all);
         runs.push_back(endure(reduced, hardship, method, count, full));
         if (!output.empty()) write_runs(output / "stress.csv", runs);
       }
@@ -145,7 +154,8 @@ void StressCommand::run() const {
                            " stopped with a reason. T is the period of the softest flexible mode.",
                     table = markdown(table_of(runs, steps));
   std::string notes;
-  for (const Hardship& hardship : wanted) notes += "- `" + hardship.name + "`: " + hardship.description + ".\n";
+  for (const Hardship& hardship : wanted)
+    notes += "- `" + std::string(hardship.info.name) + "`: " + std::string(hardship.info.description) + ".\n";
   Json report;
   report["command"] = "stress";
   report["version"] = SUPPLE_VERSION;
@@ -189,19 +199,17 @@ void StressCommand::declare(CLI::App& app) {
   command.add_option("--motions", hardships, "Separated by commas [all of those below]")
       ->delimiter(',')
       ->type_name("NAME")
-      ->check(CLI::IsMember({"pull-0.1", "pull-1", "pull-10", "crush", "invert", "wring", "blow", "jumps"}));
+      ->check(CLI::IsMember(names_of_hardships()));
   command.add_option("-o,--output", output, "Folder for stress.csv, .json, .md and .png")->type_name("DIR");
   declare_json(command, json);
   declare_threads(command, threads);
-  command.footer(
-      "Motions, undamped, for three periods T of the softest flexible mode:\n"
-      "  pull-0.1, pull-1, pull-10  pulled to so many diagonals by linear theory, then released\n"
-      "  crush, invert, wring       one end pressed onto the other, pulled through it, turned six times\n"
-      "  blow                       half of it brought to ten diagonals a period within T/10\n"
-      "  jumps                      a push that changes its sign every T/4\n"
-      "\nExamples:\n"
-      "supple stress bar.supple -o stress\n"
-      "supple stress bar.supple --full --brief --integrators average-vector-field,newmark -o stress");
+  std::string motions;
+  for (const auto& [name, description] : all_hardships)
+    motions += "  " + std::string(name) + ": " + std::string(description) + "\n";
+  command.footer("Motions, undamped, for three periods of the softest flexible mode:\n" + motions +
+                 "\nExamples:\n"
+                 "supple stress bar.supple -o stress\n"
+                 "supple stress bar.supple --full --brief --integrators average-vector-field,newmark -o stress");
   command.callback([this] { run(); });
 }
 

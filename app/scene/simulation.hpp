@@ -87,6 +87,9 @@ struct Effort {
   double energy_made = 0, energy_taken = 0;
 
   explicit Effort(const Simulation& run);
+  bool makes_energy() const { return energy_made > tolerated; }
+
+  static constexpr double tolerated = 0.01;  ///< what may be made without a warning
 };
 
 /// Error of a motion by its estimates.

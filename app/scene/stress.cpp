@@ -1,4 +1,3 @@
-#include <app/report/terminal.hpp>
 #include <app/scene/stress.hpp>
 #include <app/scene/surface.hpp>
 
@@ -100,39 +99,31 @@ std::vector<Hardship> hardships(const ReducedModel& model) {
   const Scene pluck = pluck_scene(model);
   const Subject subject(model, 2 * std::numbers::pi / (*pluck.duration / 3));
   const double T = subject.period, speed = subject.diagonal / T, acceleration = subject.diagonal / (T * T);
-  const auto quiet = [&] {
-    Scene scene;
-    scene.duration = 3 * T;
-    scene.track = pluck.track;
-    scene.damping = RayleighDamping{};
-    return scene;
-  };
-  std::vector<Hardship> all;
+  Scene quiet;
+  quiet.duration = 3 * T;
+  quiet.track = pluck.track;
+  quiet.damping = RayleighDamping{};
+
+  std::vector<Scene> scenes;  // in the order of all_hardships
   for (const double factor : {1.0, 10.0, 100.0}) {
-    Scene scene = quiet();
+    Scene& scene = scenes.emplace_back(quiet);
     scene.loads = pluck.loads;
     for (TimedLoads& timed : scene.loads) {
       timed.loads.gravity *= factor;
       for (NodalForce& load : timed.loads.forces) load.force *= factor;
     }
-    const std::string reach = shown(0.1 * factor, 2) + " diagonals";
-    all.push_back({"pull-" + shown(0.1 * factor, 2), "pulled to " + reach + " by linear theory, then released", scene});
   }
-  Scene scene = quiet();
-  scene.springs = subject.press(subject.span);
-  all.push_back({"crush", "one end pressed onto the other by springs", scene});
-  scene.springs = subject.press(2 * subject.span);
-  all.push_back({"invert", "one end pulled through the other, to where it is as far on the other side", scene});
-  scene.springs = subject.wring(6);
-  all.push_back({"wring", "one end turned six times", scene});
-  scene = quiet();
-  scene.loads = {{subject.push(100 * speed / T), {.from = 0, .until = T / 10}}};
-  all.push_back({"blow", "half of it brought to ten diagonals a period within a tenth of a period", scene});
-  scene = quiet();
+  scenes.emplace_back(quiet).springs = subject.press(subject.span);
+  scenes.emplace_back(quiet).springs = subject.press(2 * subject.span);
+  scenes.emplace_back(quiet).springs = subject.wring(6);
+  scenes.emplace_back(quiet).loads = {{subject.push(100 * speed / T), {.from = 0, .until = T / 10}}};
+  Scene& jumps = scenes.emplace_back(quiet);
   for (int k = 0; k < 12; ++k)
-    scene.loads.push_back(
+    jumps.loads.push_back(
         {subject.push((k % 2 == 0 ? 20 : -20) * acceleration), {.from = k * T / 4, .until = (k + 1) * T / 4}});
-  all.push_back({"jumps", "a push on half of it that changes its sign every quarter of a period", scene});
+
+  std::vector<Hardship> all;
+  for (std::size_t k = 0; k < all_hardships.size(); ++k) all.push_back({all_hardships[k], std::move(scenes[k])});
   return all;
 }
 
@@ -150,7 +141,7 @@ std::string_view to_string(Verdict verdict) {
 
 Verdict StressRun::verdict() const {
   if (ending != Ending::Complete) return Verdict::Stopped;
-  return missed > 0 || energy_made > 0.01 ? Verdict::Warned : Verdict::Sound;
+  return missed > 0 || energy_made > Effort::tolerated ? Verdict::Warned : Verdict::Sound;
 }
 
 StressRun endure(const ReducedModel& model, const Hardship& hardship, const std::string& integrator,
@@ -163,7 +154,7 @@ StressRun endure(const ReducedModel& model, const Hardship& hardship, const std:
   const Simulation run =
       full ? simulate_full(model.body, scene, options, nullptr) : simulate_reduced(model, scene, options, nullptr);
   const Effort effort(run);
-  return {.hardship = hardship.name,
+  return {.hardship = std::string(hardship.info.name),
           .integrator = integrator,
           .steps_per_period = steps_per_period,
           .steps_asked = options.num_steps,

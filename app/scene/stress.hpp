@@ -3,19 +3,35 @@
 
 #include <app/scene/simulation.hpp>
 
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace supple {
 
-/// A motion far beyond what a model was made for.
+/// A motion far beyond what a model was made for, by name.
+struct HardshipInfo {
+  std::string_view name, description;
+};
+inline constexpr std::array<HardshipInfo, 8> all_hardships{{
+    {"pull-0.1", "pulled to a tenth of the diagonal by linear theory, then released"},
+    {"pull-1", "pulled to one diagonal by linear theory, then released"},
+    {"pull-10", "pulled to ten diagonals by linear theory, then released"},
+    {"crush", "one end pressed onto the other by springs"},
+    {"invert", "one end pulled through the other, to where it is as far on the other side"},
+    {"wring", "one end turned six times"},
+    {"blow", "half of it brought to ten diagonals a period within a tenth of a period"},
+    {"jumps", "a push on half of it that changes its sign every quarter of a period"},
+}};
+
+/// One of them for a model.
 struct Hardship {
-  std::string name, description;
+  HardshipInfo info;
   Scene scene;
 };
 
-/// Pulls to 0.1, 1 and 10 times the diagonal, by linear theory; one end pressed onto the other, pulled through it and wrung;
-/// a blow; loads that jump. Each for three periods T of the softest flexible mode; undamped.
+/// All of them, in their order, each for three periods T of the softest flexible mode; undamped.
 std::vector<Hardship> hardships(const ReducedModel& model);
 
 /// How a run went, for the reader of a table.
