@@ -40,9 +40,9 @@ struct SystemSprings {
   }
 };
 
-/// f_ext(u) = force − stiffness u + Σ others(u), in the unknowns of a system; what is absent costs nothing. Integrators
-/// see −f_ext as a constant part, `force`, and a pull that depends on u and counts as the forces of the object do. Static
-/// solvers ask how much of both is springs: they tell dead forces from the net pull.
+/// f_ext(u) = force − stiffness u + Σ others(u), in the unknowns of a system; what is absent costs nothing. To
+/// solvers −f_ext is a constant part and a pull that depends on u and counts as the forces of the object do. Those who judge
+/// residuals ask how much of both is springs: they tell dead forces from the net pull.
 template <typename MatrixType>
 struct SystemLoad {
   Vector force;
@@ -63,16 +63,11 @@ struct SystemLoad {
   /// result += stiffness u − Σ others(u).
   void add_pull(VectorIn u, VectorOut result) const {
     if (has_stiffness()) result += stiffness * u;
-    if (others.empty()) return;
-    Vector sum = Vector::Zero(u.size());
-    for (const auto& other : others) other->add_force(u, sum);
-    result -= sum;
+    subtract_others(u, result);
   }
   /// The potential of the pull [J].
   double pull_energy(VectorIn u) const {
-    double sum = has_stiffness() ? 0.5 * u.dot(stiffness * u) : 0.0;
-    for (const auto& other : others) sum += other->potential(u);
-    return sum;
+    return (has_stiffness() ? 0.5 * u.dot(stiffness * u) : 0.0) + potential_of_others(u);
   }
   /// What of `force` no spring exerts.
   Vector dead_force() const { return springs.empty() ? force : Vector(force - springs.pull_of_targets()); }
@@ -80,18 +75,12 @@ struct SystemLoad {
   void add_net_pull(VectorIn u, VectorOut result) const {
     if (springs.empty()) return add_pull(u, result);
     result += springs.pull(u);
-    for (const auto& other : others) {
-      Vector f = Vector::Zero(u.size());
-      other->add_force(u, f);
-      result -= f;
-    }
+    subtract_others(u, result);
   }
   /// The potential of the net pull [J]: of springs, how far they are from their targets.
   double net_pull_energy(VectorIn u) const {
     if (springs.empty()) return pull_energy(u);
-    double sum = springs.energy(u);
-    for (const auto& other : others) sum += other->potential(u);
-    return sum;
+    return springs.energy(u) + potential_of_others(u);
   }
   /// K += the derivative of the pull.
   void add_stiffness(VectorIn u, MatrixType& K) const {
@@ -117,6 +106,19 @@ struct SystemLoad {
     require_size("load.springs.rows", springs.rows.cols(), dim);
     require_size("load.springs.stiffness", springs.stiffness.size(), springs.targets.size());
     require_size("load.springs.targets", springs.targets.size(), springs.rows.rows());
+  }
+
+ private:
+  void subtract_others(VectorIn u, VectorOut result) const {
+    if (others.empty()) return;
+    Vector sum = Vector::Zero(u.size());
+    for (const auto& other : others) other->add_force(u, sum);
+    result -= sum;
+  }
+  double potential_of_others(VectorIn u) const {
+    double sum = 0;
+    for (const auto& other : others) sum += other->potential(u);
+    return sum;
   }
 };
 

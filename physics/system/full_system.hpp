@@ -114,12 +114,7 @@ class FullSystem {
     require_size("f", f.size(), dim());
     const Vector full_0 = expand(u_0), way = expand(u_1 - u_0);
     Vector full(num_nodes() * node_dim);
-    sum_forces(full, [&](Index p) {
-      const LocalField u = gather(full_0, p), du = gather(way, p);
-      LocalField f_p = packs_[p].force(u + Pack(gauss_points[0]) * du);
-      f_p += packs_[p].force(u + Pack(gauss_points[1]) * du);
-      return LocalField(Pack(0.5) * f_p);
-    });
+    sum_forces(full, [&](Index p) { return mean_force_of(packs_[p], gather(full_0, p), gather(way, p)); });
     f = restrict(full);
   }
 
@@ -146,13 +141,7 @@ class FullSystem {
   /// \see supple::mean_stiffness
   void mean_stiffness(VectorIn u_0, VectorIn u_1, SparseMatrix& K) const {
     const Vector full_0 = expand(u_0), way = expand(u_1 - u_0);
-    sum_tangents(K, [&](Index p) {
-      const LocalField u = gather(full_0, p), du = gather(way, p);
-      LocalMatrix<Model::local_dofs, Pack> K_p =
-          Pack(0.5 * gauss_points[0]) * packs_[p].stiffness(u + Pack(gauss_points[0]) * du);
-      K_p += Pack(0.5 * gauss_points[1]) * packs_[p].stiffness(u + Pack(gauss_points[1]) * du);
-      return K_p;
-    });
+    sum_tangents(K, [&](Index p) { return mean_stiffness_of(packs_[p], gather(full_0, p), gather(way, p)); });
   }
   const SparseMatrix& rest_stiffness() const { return rest_stiffness_; }
 

@@ -41,6 +41,24 @@ void mean_stiffness(const System& system, VectorIn u_0, VectorIn u_1, typename S
   }
 }
 
+/// f̄ of terms that are evaluated together, such as a TermPack: from u on, along du.
+template <typename Terms, typename Field>
+Field mean_force_of(const Terms& terms, const Field& u, const Field& du) {
+  using Real = typename Field::Scalar;
+  Field f = terms.force(u + Real(gauss_points[0]) * du);
+  f += terms.force(u + Real(gauss_points[1]) * du);
+  return Real(0.5) * f;
+}
+/// Their ∂f̄/∂u_1.
+template <typename Terms, typename Field>
+auto mean_stiffness_of(const Terms& terms, const Field& u, const Field& du) {
+  using Real = typename Field::Scalar;
+  LocalMatrix<Field::RowsAtCompileTime, Real> K =
+      Real(0.5 * gauss_points[0]) * terms.stiffness(u + Real(gauss_points[0]) * du);
+  K += Real(0.5 * gauss_points[1]) * terms.stiffness(u + Real(gauss_points[1]) * du);
+  return K;
+}
+
 /// ½ Σ_g E(u_0 + τ_g Δ) / τ_g [J], whose derivative in u_1 is f̄.
 template <DynamicalSystem System>
 double mean_force_potential(const System& system, VectorIn u_0, VectorIn u_1) {

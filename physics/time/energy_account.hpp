@@ -63,10 +63,7 @@ class EnergyAccount {
   }
   /// v̄ᵀ D v̄ h at the mean velocity v̄ = Δu / h.
   double damping_work(const Vector& du, double h) const {
-    double sum = 0;
-    if (damping_.alpha != 0) sum += damping_.alpha * du.dot(system_->mass().cwiseProduct(du));
-    if (damping_.beta != 0) sum += damping_.beta * du.dot(system_->rest_stiffness() * du);
-    return sum / h;
+    return damping_.acts() ? du.dot(damping_force(*system_, damping_, du)) / h : 0;
   }
 
   const System* system_;

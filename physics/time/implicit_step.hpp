@@ -68,7 +68,7 @@ class StepObjective {
     rounding_ = rounding_of_system_;
     if (load.has_stiffness()) rounding_ += rounding * load.stiffness.diagonal();
     u_m_ = std::move(u_m);
-    if (!damped()) return;
+    if (!damping_.acts()) return;
     u_d_ = std::move(u_d);
     damping_force_ = damp(v_tilde);
   }
@@ -82,7 +82,7 @@ class StepObjective {
   double value(VectorIn u) const {
     const Vector du = u - u_m_;
     const double phi = 0.5 * c_m_ * du.dot(system_.mass().cwiseProduct(du)) + forces_.energy(u) - dead_force_.dot(u);
-    return damped() ? phi + damping_value(u) : phi;
+    return damping_.acts() ? phi + damping_value(u) : phi;
   }
   void gradient(VectorIn u, VectorOut g) {
     forces_.elastic(u, g);
@@ -96,7 +96,7 @@ class StepObjective {
     const Vector inertia = c_m_ * system_.mass().cwiseProduct(u - u_m_);
     scale_ = std::max({scale_, inertia.norm(), rounding_.cwiseProduct(u).norm() / tolerance_});
     g += inertia - dead_force_;
-    if (!damped()) return;
+    if (!damping_.acts()) return;
     const Vector damping = damping_force_ + c_d_ * damp(u - u_d_);
     scale_ = std::max(scale_, damping.norm());
     g += damping;
@@ -113,19 +113,12 @@ class StepObjective {
   const Vector& metric() const { return system_.mass(); }
   BlockRotations frames(VectorIn u) const { return frames_of(system_, u); }
 
-  bool damped() const { return damping_.alpha != 0 || damping_.beta != 0; }
-  /// D v.
-  Vector damp(VectorIn v) const {
-    Vector result = damping_.alpha * system_.mass().cwiseProduct(v);
-    if (damping_.beta != 0) result += damping_.beta * (system_.rest_stiffness() * v);
-    return result;
-  }
-
  private:
   void add_inertia(MatrixType& H) const {
     if (damping_.beta != 0) add_scaled(H, c_d_ * damping_.beta, system_.rest_stiffness());
     add_diagonal(H, (c_m_ + c_d_ * damping_.alpha) * system_.mass());
   }
+  Vector damp(VectorIn v) const { return damping_force(system_, damping_, v); }
   double damping_value(VectorIn u) const {
     const Vector du = u - u_d_;
     return 0.5 * c_d_ * du.dot(damp(du)) + damping_force_.dot(u);
@@ -158,7 +151,7 @@ class ImplicitIntegrator {
     Vector r(system_.dim());
     system_.force(state.u, r);
     load.add_pull(state.u, r);
-    if (objective_.damped()) r += objective_.damp(state.v);
+    if (options_.damping.acts()) r += damping_force(system_, options_.damping, state.v);
     state.a = (load.force - r).cwiseQuotient(system_.mass());
     state.before.reset();
   }

@@ -99,9 +99,7 @@ class WeightedComponents {
     require_size("q_1", q_1.size(), dim());
     sum_forces(f, [&](std::size_t c, const auto* E) {
       const auto [u, du] = gather_way(E, q_0.data(), q_1.data());
-      Local<Model::local_dofs, Pack> f_c = terms_[c].force(u + Pack(gauss_points[0]) * du);
-      f_c += terms_[c].force(u + Pack(gauss_points[1]) * du);
-      return Local<Model::local_dofs, Pack>(Pack(0.5) * f_c);
+      return mean_force_of(terms_[c], u, du);
     });
   }
 
@@ -122,10 +120,7 @@ class WeightedComponents {
     require_size("q_1", q_1.size(), dim());
     project_tangents(K, [&](std::size_t c, const auto* E) {
       const auto [u, du] = gather_way(E, q_0.data(), q_1.data());
-      LocalMatrix<Model::local_dofs, Pack> K_c =
-          Pack(0.5 * gauss_points[0]) * terms_[c].stiffness(u + Pack(gauss_points[0]) * du);
-      K_c += Pack(0.5 * gauss_points[1]) * terms_[c].stiffness(u + Pack(gauss_points[1]) * du);
-      return K_c;
+      return mean_stiffness_of(terms_[c], u, du);
     });
   }
 
@@ -204,6 +199,7 @@ class WeightedComponents {
             if constexpr (symmetric_tangent) K(b * block + y, a * block + x) = sums(a, pair * p + b);
           }
   }
+
   /// Calls loop(rows_of), where rows_of(c) points to the rows of W behind pack c, in the precision they are kept in.
   template <typename Loop>
   void with_rows(const Loop& loop) const {
