@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <mutex>
+#include <set>
 #include <string>
 #include <system_error>
 #include <unistd.h>
@@ -27,6 +29,16 @@ int own_descriptor(std::filesystem::path path) {
     path = folder / std::filesystem::read_symlink(path, no_link);
   }
   return -1;
+}
+
+/// Temporary files that are there now.
+struct Unfinished {
+  std::mutex mutex;
+  std::set<std::filesystem::path> paths;
+};
+Unfinished& unfinished() {
+  static auto* const files = new Unfinished;  // outlives whoever ends the process
+  return *files;
 }
 
 std::filesystem::path follow_links(const std::filesystem::path& path) {
@@ -55,18 +67,23 @@ OutputFile::OutputFile(const std::filesystem::path& path) : path_(follow_links(p
     return;
   }
   static std::atomic<unsigned> serial{0};
+  const std::lock_guard lock(unfinished().mutex);
   do {
     temporary_ = path_.parent_path() / ("." + path_.filename().string() + "." + std::to_string(::getpid()) + "-" +
                                         std::to_string(serial++) + ".tmp");
     descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor_ < 0 && errno == EEXIST);
   if (descriptor_ < 0) fail("create");
+  unfinished().paths.insert(temporary_);
 }
 
 OutputFile::~OutputFile() {
   if (descriptor_ < 0) return;
   ::close(descriptor_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (temporary_.empty()) return;
+  const std::lock_guard lock(unfinished().mutex);
+  ::unlink(temporary_.c_str());
+  unfinished().paths.erase(temporary_);
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
@@ -83,7 +100,11 @@ void OutputFile::commit() {
     return;
   }
   if (::fsync(descriptor_) != 0) fail("write");
-  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("replace");
+  {
+    const std::lock_guard lock(unfinished().mutex);
+    if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail("replace");
+    unfinished().paths.erase(temporary_);
+  }
   ::close(descriptor_);
   descriptor_ = -1;
   // The new name is on the disk only once its folder is; where folders cannot be synchronised, the file still
@@ -97,6 +118,11 @@ void OutputFile::commit() {
 
 void OutputFile::fail(const char* action) const {
   throw InputError(path_.string() + ": cannot " + action + ": " + std::strerror(errno));
+}
+
+void abandon_output_files() {
+  unfinished().mutex.lock();
+  for (const std::filesystem::path& path : unfinished().paths) ::unlink(path.c_str());
 }
 
 void write_file(const std::filesystem::path& path, std::string_view content) {

@@ -35,6 +35,10 @@ class OutputFile {
   int descriptor_ = -1;
 };
 
+/// Removes what OutputFiles have not committed, and lets none of them go on: the last act of a process that is to end at
+/// once.
+void abandon_output_files();
+
 /// OutputFile for content that is there at once.
 void write_file(const std::filesystem::path& path, std::string_view content);
 

@@ -1,11 +1,10 @@
 #include <core/check.hpp>
+#include <core/digest.hpp>
 #include <core/output_file.hpp>
 #include <core/parallel.hpp>
 #include <core/tensor_file.hpp>
 
 #include <nlohmann/json.hpp>
-#define XXH_INLINE_ALL  // nothing to link
-#include <xxhash.h>
 
 #include <algorithm>
 #include <bit>
@@ -39,10 +38,7 @@ std::string array_key(std::string_view name) {
 }
 
 std::string checksum(std::span<const std::byte> bytes) {
-  std::uint64_t hash = XXH3_64bits(bytes.data(), bytes.size());
-  std::string hex(16, '0');
-  for (auto digit = hex.rbegin(); digit != hex.rend(); ++digit, hash >>= 4) *digit = "0123456789abcdef"[hash & 15];
-  return hex;
+  return Digest().add(bytes).text();
 }
 
 /// Of the header without its own checksum, in the one spelling that dump() gives it.

@@ -191,6 +191,7 @@ void ParetoCommand::run() const {
   Sweep sweep(*this, body);
   const std::vector<ReduceOptions> wanted = models_to_make(*this, named, body);
   const OutputFolder folder(output);
+  keep_stages(Checkpoint(checkpoint));
   const ParetoError error = trajectory ? ParetoError::Trajectory : ParetoError::Equilibria;
   std::vector<ParetoPoint>& points = sweep.points;
   for (const ReduceOptions& model : wanted) {
@@ -252,6 +253,7 @@ void ParetoCommand::declare(CLI::App& app) {
   declare_seed(command, seed);
   declare_fitting(command, *this);
   declare_full_loads(command, *this, /*least=*/1);
+  declare_checkpoint(command, *this);
   const auto sweep = "Sweep";
   command
       .add_option(

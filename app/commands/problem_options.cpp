@@ -1,4 +1,5 @@
 #include <app/commands/problem_options.hpp>
+#include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
 #include <app/scene/pose_file.hpp>
@@ -143,12 +144,12 @@ double shell_thickness(const ProblemOptions& problem, const TriangleMesh& mesh) 
 Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
   const std::vector<Index> held = held_nodes(problem, named);
   const RayleighDamping damping = read_damping(problem);
-  const bool gauss_points = problem.components == "gauss-points";
+  const bool by_gauss_points = problem.components == "gauss-points";
   const auto solid_body = [&]<typename Mesh>(const Mesh& mesh) -> Body {
     SolidOf<Mesh> solid{.mesh = mesh, .fixed_nodes = held, .damping = damping};
     if (problem.thickness)
       throw InputError("--thickness is for surfaces; the mesh has " + std::string(cell_name(Body(SolidOf<Mesh>{}))));
-    if (gauss_points) {
+    if (by_gauss_points) {
       if constexpr (std::same_as<Mesh, TetMesh>)
         throw InputError(
             "--components gauss-points is for hexahedra and quadratic tets; a linear tet has one Gauss point");
@@ -158,7 +159,7 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
     return solid;
   };
   const auto shell_body = [&](const TriangleMesh& surface) -> Body {
-    if (gauss_points)
+    if (by_gauss_points)
       throw InputError("--components gauss-points is for solids; the components of a surface are flaps");
     if (problem.law != "stvk")
       throw InputError("--material " + problem.law + " is for solids; a surface is a discrete shell");
@@ -236,6 +237,7 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
   if (pca && !problem.snapshots) throw InputError("--subspace pca needs --snapshots");
   if (!pca && problem.snapshots) throw InputError("--snapshots are for --subspace pca");
   options.seed = problem.seed;
+  options.checkpoint = Checkpoint(problem.checkpoint);
   if (problem.modes) options.modes = *problem.modes;
   if (problem.poses) options.poses.count = *problem.poses;
   if (problem.held_out) options.held_out_poses = *problem.held_out;
@@ -249,6 +251,13 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
       problem.inverted ? std::optional(value_named<InvertedPoses>(*problem.inverted, "inverted")) : std::nullopt);
   if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, named.nodes());
   return options;
+}
+
+void keep_stages(const Checkpoint& checkpoint) {
+  if (!checkpoint.keeps()) return;
+  checkpoint.make_folder();
+  on_signal_say("interrupted; the same command goes on from the stages that " + checkpoint.folder().string() +
+                " keeps");
 }
 
 Index num_components_to_weight(const Body& body, const ReduceOptions& options) {

@@ -35,6 +35,7 @@ struct ProblemOptions {
   std::vector<double> amplitudes;
   std::optional<std::string> norm, inverted;
   std::optional<std::filesystem::path> poses_file;
+  std::filesystem::path checkpoint;  ///< folder that keeps long stages; empty: none
   std::uint64_t seed = 1;
 };
 
@@ -47,6 +48,8 @@ std::string recipe_of(const ProblemOptions& problem);
 /// The recipe with what the options change; selector and size are left to the command.
 /// \param named  the object's mesh, which a file of poses must fit.
 ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& named, const Body& body);
+/// Makes the folder of a checkpoint, if it keeps anything, and says on an interrupt that the same command goes on from it.
+void keep_stages(const Checkpoint& checkpoint);
 /// How many components the selector "all" would weight. \throws InputError if NNLS on so many is out of reach.
 Index num_components_to_weight(const Body& body, const ReduceOptions& options);
 /// What poses the problem, and nothing that differs between two runs of the same job.

@@ -364,6 +364,7 @@ void ReduceCommand::run() const {
   ReduceOptions options = method(*this, named, body);
   const std::vector<ModelRung> ladder = goal ? ladder_of(*this, body, options) : std::vector<ModelRung>();
   const OutputFolder folder(plots);
+  keep_stages(options.checkpoint);
   const double read_seconds = watch.seconds();
 
   ReduceReport report;
@@ -449,6 +450,7 @@ void ReduceCommand::declare(CLI::App& app) {
       ->check(whole_number())
       ->group(method_group);
   declare_full_loads(command, *this, /*least=*/0);
+  declare_checkpoint(command, *this);
   command.add_option("--target-error", target_error, "Take as few components as reach this training error")
       ->type_name("SHARE")
       ->check(positive_number())

@@ -201,6 +201,13 @@ void declare_training(CLI::App& command, ProblemOptions& problem) {
   declare_fitting(command, problem);
 }
 
+void declare_checkpoint(CLI::App& command, ProblemOptions& problem) {
+  command
+      .add_option("--checkpoint", problem.checkpoint,
+                  "Folder that keeps modes, derivatives, forces and selections: the same command goes on from there")
+      ->type_name("DIR");
+}
+
 void declare_full_loads(CLI::App& command, ProblemOptions& problem, Index least) {
   command
       .add_option("--full-loads", problem.full_loads,

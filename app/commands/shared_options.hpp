@@ -33,6 +33,8 @@ void declare_problem(CLI::App& command, ProblemOptions& problem);
 void declare_fitting(CLI::App& command, ProblemOptions& problem);
 /// The subspace and the training.
 void declare_training(CLI::App& command, ProblemOptions& problem);
+/// Where stages are kept.
+void declare_checkpoint(CLI::App& command, ProblemOptions& problem);
 /// How models are compared with the full object. \param least  number of loads.
 void declare_full_loads(CLI::App& command, ProblemOptions& problem, Index least);
 

@@ -5,7 +5,9 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <fcntl.h>
+#include <string>
 #include <thread>
 #include <unistd.h>
 
@@ -16,6 +18,11 @@ namespace {
 std::recursive_mutex& files() {
   static auto* const mutex = new std::recursive_mutex;  // outlives the thread that waits
   return *mutex;
+}
+
+std::string& farewell() {
+  static auto* const text = new std::string;
+  return *text;
 }
 
 std::atomic<int> last_signal = 0;
@@ -40,6 +47,8 @@ void watch_for_signals() {
       if (errno != EINTR) return;
     const std::lock_guard lock(files());
     clear_progress();
+    abandon_output_files();
+    if (!farewell().empty()) std::fprintf(stderr, "supple: %s\n", farewell().c_str());
     _exit(128 + signal);
   }).detach();
   struct sigaction handler {};
@@ -50,6 +59,11 @@ void watch_for_signals() {
     if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler == SIG_IGN) continue;  // as under nohup
     sigaction(signal, &handler, nullptr);
   }
+}
+
+void on_signal_say(std::string text) {
+  const std::lock_guard lock(files());
+  farewell() = std::move(text);
 }
 
 int exit_code(int code) {

@@ -3,12 +3,16 @@
 
 #include <filesystem>
 #include <mutex>
+#include <string>
 
 namespace supple {
 
 /// From now on SIGINT, SIGTERM and SIGHUP are passed to a thread of its own, which ends the process when no ExitGuard
 /// lives, whatever thread they reach: libraries may have started some before main().
 void watch_for_signals();
+
+/// What is said on stderr if a signal ends the process from now on: one line, such as where results so far are kept.
+void on_signal_say(std::string text);
 
 /// What the process ends with where it would have ended with `code` by itself: 128 + the signal that came before, whose
 /// thread may still be waiting for its turn.

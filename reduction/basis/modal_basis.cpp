@@ -1,4 +1,5 @@
 #include <core/check.hpp>
+#include <reduction/basis/kept_modes.hpp>
 #include <reduction/basis/modal_basis.hpp>
 
 #include <cmath>
@@ -34,13 +35,21 @@ VibrationModes vibration_modes(const RestState& object, const ModeOptions& optio
     };
     rigid = mass_orthonormalize(over_unknowns(all), mass).W;
   }
-  const EigenPairs pairs = smallest_eigenpairs(
-      object.K, mass, rigid,
-      {.num_modes = num_flexible, .tolerance = options.tolerance, .seed = options.seed, .progress = options.progress});
-  if (pairs.report.status != Status::Converged)
-    throw SolverError("vibration modes: only " + std::to_string(pairs.omega_squared.size()) + " of " +
-                      std::to_string(num_flexible) + " pairs found, largest residual " +
-                      std::to_string(pairs.report.residual));
+  const auto inputs = [&](Digest& digest) {
+    digest.add(object.K).add(mass).add(rigid).add(num_flexible).add(options.tolerance).add(options.seed);
+  };
+  const EigenPairs pairs = options.checkpoint.keep("modes", inputs, [&] {
+    EigenPairs found = smallest_eigenpairs(object.K, mass, rigid,
+                                           {.num_modes = num_flexible,
+                                            .tolerance = options.tolerance,
+                                            .seed = options.seed,
+                                            .progress = options.progress});
+    if (found.report.status != Status::Converged)
+      throw SolverError("vibration modes: only " + std::to_string(found.omega_squared.size()) + " of " +
+                        std::to_string(num_flexible) + " pairs found, largest residual " +
+                        std::to_string(found.report.residual));
+    return found;
+  });
 
   result.vectors.resize(n * node_dim, rigid.cols() + num_flexible);
   for (Index j = 0; j < rigid.cols(); ++j) result.vectors.col(j) = numbering.expand(rigid.col(j), node_dim);

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Subspaces from linear vibration modes: the modes themselves, and the modes extended by linear maps.
 
+#include <core/checkpoint.hpp>
 #include <core/progress.hpp>
 #include <numerics/eigen/eigensolver.hpp>
 #include <reduction/subspace/rigid_modes.hpp>
@@ -27,6 +28,7 @@ struct ModeOptions {
   double tolerance = 1e-8;  ///< relative residual of each pair
   std::uint64_t seed = 1;
   Progress progress = {};
+  Checkpoint checkpoint = {};  ///< keeps the pairs
 };
 
 /// Where the object does not know its positions, rigid modes are not known beforehand and have to be found.
@@ -40,9 +42,10 @@ struct ModalBasis {
   double tolerance = 1e-8;
   std::uint64_t seed = 1;
   Progress progress = {};
+  Checkpoint checkpoint = {};  ///< keeps the modes
 
   DenseBasis operator()(const RestState& object) const {
-    const VibrationModes modes = vibration_modes(object, {num_modes, tolerance, seed, progress});
+    const VibrationModes modes = vibration_modes(object, {num_modes, tolerance, seed, progress, checkpoint});
     return {modes.vectors, modes.report()};
   }
 };
@@ -58,11 +61,12 @@ struct ExtendedModalBasis {
   double tolerance = 1e-8;  ///< of the modes
   std::uint64_t seed = 1;
   Progress progress = {};
+  Checkpoint checkpoint = {};  ///< keeps the modes
 
   /// \throws std::invalid_argument for an object that is not in ℝ³.
   NodalBasis operator()(const RestState& object) const {
     object.require_space();
-    return extend_modes(vibration_modes(object, {num_modes, tolerance, seed, progress}), object.positions,
+    return extend_modes(vibration_modes(object, {num_modes, tolerance, seed, progress, checkpoint}), object.positions,
                         object.nodal_mass);
   }
 };

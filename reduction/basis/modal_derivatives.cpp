@@ -4,6 +4,7 @@
 #include <numerics/linear/matrix_sums.hpp>
 #include <numerics/linear/tall_qr.hpp>
 #include <reduction/basis/force_curvature.hpp>
+#include <reduction/basis/kept_modes.hpp>
 #include <reduction/basis/modal_derivatives.hpp>
 
 #include <Eigen/SVD>
@@ -146,7 +147,19 @@ DenseBasis ModalDerivatives::operator()(const RestState& object) const {
           "number of modes is " + std::to_string(num_modes) + " beside " + std::to_string(parts.num_rigid_modes()) +
               " rigid ones, but the system has only " + std::to_string(object.mass.size()) + " unknowns");
   const VibrationModes modes =
-      vibration_modes(object, {parts.num_rigid_modes() + num_modes, tolerance, seed, progress});
+      vibration_modes(object, {parts.num_rigid_modes() + num_modes, tolerance, seed, progress, checkpoint});
+  const auto inputs = [&](Digest& digest) {
+    digest.add(object.K).add(object.mass).add(object.positions).add(modes.vectors).add(modes.omega);
+    digest.add(dimension).add(num_derivatives).add(num_pairs).add(affine_fields).add(derivative_tolerance);
+    const Matrix state = object.restrict(modes.vectors.rightCols(1));
+    Matrix force(state.rows(), 1);
+    object.forces(state, force);  // derivatives depend on the law beyond K
+    digest.add(force);
+  };
+  return checkpoint.keep("derivatives", inputs, [&] { return with_derivatives(object, modes); });
+}
+
+DenseBasis ModalDerivatives::with_derivatives(const RestState& object, const VibrationModes& modes) const {
   require(num_derivatives >= 0, "number of derivatives is " + std::to_string(num_derivatives) + ", expected 0 or more");
   const Index pairs = num_pairs != 0 || dimension > 0 ? num_pairs : 2 * num_derivatives;
   const ModalDerivativeVectors derivatives = modal_derivatives(object, modes, derivative_tolerance, progress, pairs);
@@ -158,7 +171,7 @@ DenseBasis ModalDerivatives::operator()(const RestState& object) const {
 
   // rigid or affine motions and the modes, which stay whatever the dimension
   const Index num_flexible = modes.vectors.cols() - modes.num_rigid;
-  const RowMatrix affine = affine_fields ? supple::affine_fields(object.positions, parts) : RowMatrix();
+  const RowMatrix affine = affine_fields ? supple::affine_fields(object.positions, modes.components) : RowMatrix();
   const Index num_global = affine_fields ? 3 * affine.cols() : modes.num_rigid;
   RowMatrix start = RowMatrix::Zero(mass.size(), num_global + num_flexible);
   if (affine_fields) {

@@ -41,9 +41,13 @@ struct ModalDerivatives {
   double derivative_tolerance = 1e-5;  ///< of derivatives, ‖K θ + H‖ / ‖H‖
   std::uint64_t seed = 1;
   Progress progress = {};
+  Checkpoint checkpoint = {};  ///< keeps the modes and the basis
 
   /// \throws std::invalid_argument if `dimension` has no room for the modes.
   DenseBasis operator()(const RestState& object) const;
+
+ private:
+  DenseBasis with_derivatives(const RestState& object, const VibrationModes& modes) const;
 };
 
 static_assert(SubspaceBuilder<ModalDerivatives>);

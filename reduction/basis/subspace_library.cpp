@@ -24,8 +24,11 @@ AnyBasis share(Basis basis) {
 VibrationModes modes_of(const RestState& object, const SubspaceChoice& choice, Index count, const SubspaceRun& run) {
   VibrationModes modes;
   run.stage("vibration modes", [&] {
-    modes = vibration_modes(
-        object, {.num_modes = count, .tolerance = choice.tolerance, .seed = choice.seed, .progress = run.progress});
+    modes = vibration_modes(object, {.num_modes = count,
+                                     .tolerance = choice.tolerance,
+                                     .seed = choice.seed,
+                                     .progress = run.progress,
+                                     .checkpoint = run.checkpoint});
   });
   return modes;
 }

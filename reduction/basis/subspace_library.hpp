@@ -1,6 +1,7 @@
 #pragma once
 /// \file Registry of subspaces, for commands and comparisons.
 
+#include <core/checkpoint.hpp>
 #include <core/progress.hpp>
 #include <core/registry.hpp>
 #include <reduction/basis/subspace_choice.hpp>
@@ -20,6 +21,7 @@ struct SubspaceRun {
   std::function<void(const std::string& stage, const Work& work)> stage = [](const std::string&, const Work& work) {
     work();
   };
+  Checkpoint checkpoint = {};
 };
 
 /// A subspace by name.
@@ -32,8 +34,8 @@ struct NamedSubspace {
       build;
 };
 
-/// The entry of a builder of one's own. Its members num_modes, dimension, snapshots, tolerance, seed and progress, if it
-/// has them, take what the choice says. \param stage  what reports call its time.
+/// The entry of a builder of one's own. Its members num_modes, dimension, snapshots, tolerance, seed, progress and checkpoint,
+/// if it has them, take what the choice and the run say. \param stage  what reports call its time.
 ///
 ///     subspaces().add(named_subspace<MyBasis>("my-basis", "what it spans"));
 template <SubspaceBuilder Builder>
@@ -49,6 +51,7 @@ NamedSubspace named_subspace(std::string name, std::string description,
     if constexpr (requires { build.tolerance = choice.tolerance; }) build.tolerance = choice.tolerance;
     if constexpr (requires { build.seed = choice.seed; }) build.seed = choice.seed;
     if constexpr (requires { build.progress = run.progress; }) build.progress = run.progress;
+    if constexpr (requires { build.checkpoint = run.checkpoint; }) build.checkpoint = run.checkpoint;
     AnyBasis result;
     run.stage(stage, [&] {
       auto basis = build(object);

@@ -17,9 +17,10 @@ void with_object(const Body& body, const ReduceOptions& options, StageClock& sta
     const auto system = stage("full system", [&](auto) {
       return std::make_shared<const FullSystem<Model>>(model, nodal_mass(body), fixed_nodes(body));
     });
-    const SubspaceRun run{stage.progress(), [&](const std::string& name, const SubspaceRun::Work& work) {
-                            stage(name, [&](auto) { work(); });
-                          }};
+    const SubspaceRun run{
+        stage.progress(),
+        [&](const std::string& name, const SubspaceRun::Work& work) { stage(name, [&](auto) { work(); }); },
+        options.checkpoint};
     std::visit([&](const auto& subspace) { visit(system, subspace); },
                build_subspace(system->rest_state(), options.subspace_choice(), run));
   });

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Options and report of reduce(), as plain data.
 
+#include <core/checkpoint.hpp>
 #include <core/types.hpp>
 #include <reduction/basis/subspace_choice.hpp>
 #include <reduction/system/stiffness_range.hpp>
@@ -52,6 +53,8 @@ struct ReduceOptions {
   Index held_out_poses = 100;          ///< random ones at each of three amplitudes; 0: measure nothing held out
   Index full_loads = 0;                ///< fresh loads under which the model is compared with the full object; 0: none
   std::uint64_t seed = 1;
+  /// Keeps modes, derivatives, relaxed forces and selections, to go on from after a stop with the same bits.
+  Checkpoint checkpoint = {};
 
   SubspaceChoice subspace_choice() const {
     return {.name = subspace, .modes = modes, .dimension = dimension, .snapshots = snapshots, .seed = seed};

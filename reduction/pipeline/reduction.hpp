@@ -44,11 +44,6 @@ bool is_weak(const Training<Model, S>& training, const WorkingComponents& workin
   return has_symmetric_tangent<Model>() && rest_stiffness_of(training, working).is_weak();
 }
 
-struct SelectedComponents {
-  Selection selection;
-  Index too_weak = 0;  ///< size of a smaller selection that was enough but for its stiffness at rest; 0: there was none
-};
-
 /// The stage of selection, by select(problem, request): at most as many components as the options say. Where they leave the
 /// number open, there are as many as leave no direction weak, as far as that takes no more than eight for each dimension.
 template <ForceModel Model, Subspace S, typename Selector>
@@ -78,6 +73,15 @@ class ComponentSelection {
       }
       return result;
     });
+  }
+
+  /// The same from the options' checkpoint, for selectors that have a name; others select afresh.
+  SelectedComponents kept(const Progress& progress) const {
+    if constexpr (std::same_as<Selector, AnySelector>)
+      return options_.checkpoint.keep(
+          "selection", [&](Digest& digest) { add_inputs(digest); }, [&] { return (*this)(progress); });
+    else
+      return (*this)(progress);
   }
 
   /// A number of points, to a tenth of it, that leaves no direction weak where `selection` does; 0: not even most() do.
@@ -121,6 +125,20 @@ class ComponentSelection {
         return training_.held_out.front().second.error(indices, weights);
       };
     return request;
+  }
+  void add_inputs(Digest& digest) const {
+    digest.add(options_.selector).add(options_.seed).add(options_.points).add(options_.target_error);
+    digest.add(options_.candidates).add(options_.must_keep).add(options_.held_out_poses);
+    digest.add(options_.warm_start.indices).add(options_.warm_start.weights);
+    with_problem([&](const auto& problem) {
+      digest.add(problem.cols()).add(problem.rhs());
+      Vector column(problem.rows());
+      constexpr Index samples = 16;
+      for (Index k = 0; k < samples; ++k) {
+        problem.column(k * (problem.cols() - 1) / samples, column);
+        digest.add(column);
+      }
+    });
   }
   bool reaches_error(const Selection& selection) const {
     return options_.target_error == 0 || selection.report.training_error <= options_.target_error;
@@ -253,7 +271,8 @@ template <ForceModel Model, Subspace S, typename Selector>
 Reduction<Model, S> reduce(const Training<Model, S>& training, const Selector& select, const ReduceOptions& options,
                            StageClock& stage) {
   const ComponentSelection<Model, S, Selector> select_components(training, select, options);
-  const SelectedComponents selected = stage("selection", [&](auto) { return select_components(stage.progress()); });
+  const SelectedComponents selected =
+      stage("selection", [&](auto) { return select_components.kept(stage.progress()); });
   const Selection& selection = selected.selection;
   WorkingComponents working = working_components(selection, options.selector);
   stage("refit", [&](auto) {

@@ -4,6 +4,7 @@
 #include <physics/mesh/cell_mesh.hpp>
 #include <physics/system/any_system.hpp>
 #include <physics/system/full_system.hpp>
+#include <reduction/pipeline/kept_training.hpp>
 #include <reduction/pipeline/object_traits.hpp>
 #include <reduction/pipeline/reduce_options.hpp>
 #include <reduction/pipeline/stage_clock.hpp>
@@ -278,7 +279,8 @@ EquilibriumFitting<Model, S> fit_equilibria(const ReducedObject<Model, S>& objec
     const Matrix linear = equilibrium_loads(object, traits.equilibria, seeds.equilibria, options);
     const Matrix at_rest =
         treat_inverted(model, *object.subspace, equilibrium_poses(rough, object.modes, linear), traits.inverted).Q;
-    if (relaxation) relaxed = relaxation->relaxed(at_rest);
+    const auto inputs = [&](Digest& digest) { digest.add(object.rest_stiffness).add(at_rest).add(fitting.rhs()); };
+    if (relaxation) relaxed = options.checkpoint.keep("forces", inputs, [&] { return relaxation->relaxed(at_rest); });
     const double share = static_cast<double>(fitting.num_poses()) / static_cast<double>(traits.equilibria);
     return {model,
             object.subspace,

@@ -6,6 +6,8 @@
 
 #include <gmock/gmock.h>
 
+#include <csignal>
+
 namespace supple::test {
 
 namespace {
@@ -563,6 +565,68 @@ TEST_F(ReduceCommandTest, RefusesModelsWhoseArraysContradict) {
   tets.add("mesh.tets", std::vector<std::array<std::int32_t, 4>>{{0, 1, 2, 3}});
   tets.write(folder / "tets.supple");
   expect_refusal({"info", "tets.supple"}, {"tets.supple", "'gauss-point'", "none for tets"});
+}
+
+TEST_F(ReduceCommandTest, GoesOnFromACheckpointWithTheSameBits) {
+  for (const Arguments& job : {Arguments{"reduce", "bar:10x3x3", "--fix", "x<=0", "--modes", "6"},
+                               Arguments{"reduce", "bar:10x3x3", "--recipe", "subspace", "--modes", "9"}}) {
+    const auto bytes_of = [&](const Arguments& more) {
+      Arguments arguments = job;
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const Outcome outcome = supple(arguments);
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+      return read(more[1]);
+    };
+    const std::string whole = bytes_of({"-o", "whole.supple"});
+    EXPECT_EQ(bytes_of({"-o", "first.supple", "--checkpoint", "kept"}), whole);
+    std::vector<std::filesystem::path> stages;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "kept")) stages.push_back(entry.path());
+    EXPECT_GE(stages.size(), 2u);
+    for (const std::filesystem::path& stage : stages) {  // as after a stop before it
+      std::filesystem::remove(stage);
+      EXPECT_EQ(bytes_of({"-o", "again.supple", "--checkpoint", "kept"}), whole) << "without " << stage;
+      EXPECT_TRUE(std::filesystem::exists(stage));
+    }
+    for (const std::filesystem::path& stage : stages) std::filesystem::last_write_time(stage, {});
+    EXPECT_EQ(bytes_of({"-o", "again.supple", "--checkpoint", "kept"}), whole);
+    for (const std::filesystem::path& stage : stages)
+      EXPECT_EQ(std::filesystem::last_write_time(stage), std::filesystem::file_time_type())
+          << stage << " was made twice";
+    std::filesystem::remove_all(folder / "kept");
+  }
+}
+
+TEST_F(ReduceCommandTest, KeepsStagesOfOtherObjectsAndOptionsApart) {
+  const auto bytes_of = [&](const Arguments& more, bool keep) {
+    Arguments arguments{"reduce", "bar:6x2x2", "-o", "bar.supple", "--fix", "x<=0"};
+    if (std::ranges::find(more, "--modes") == more.end()) arguments.insert(arguments.end(), {"--modes", "5"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    if (keep) arguments.insert(arguments.end(), {"--checkpoint", "kept"});
+    const Outcome outcome = supple(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return read("bar.supple");
+  };
+  for (const Arguments& other : {Arguments{}, Arguments{"--points", "40"}, Arguments{"--seed", "2"},
+                                 Arguments{"--material", "stable-neo-hookean"}, Arguments{"--young", "2e5"},
+                                 Arguments{"--modes", "7"}, Arguments{"--equilibria", "20"}})
+    EXPECT_EQ(bytes_of(other, true), bytes_of(other, false)) << (other.empty() ? "" : other[0]);
+}
+
+TEST_F(ReduceCommandTest, GoesOnAfterItWasKilled) {
+  const Arguments job{"reduce", "bar:24x8x8", "-o", "bar.supple", "--fix", "x<=0", "--full-loads", "0"};
+  ASSERT_EQ(supple(job).exit_code, 0);
+  const std::string whole = read("bar.supple");
+  Arguments kept = job;
+  kept.insert(kept.end(), {"--checkpoint", "kept"});
+  for (const int milliseconds : {100, 300, 600, 900})
+    (void)run_supple_until_signal(kept, folder, SIGKILL, milliseconds);
+  const Outcome stopped = run_supple_until_signal(kept, folder, SIGINT, 50);
+  if (stopped.exit_code == 128 + SIGINT) {
+    EXPECT_THAT(stopped.err, HasSubstr("interrupted; the same command goes on from the stages that kept keeps"));
+  }
+  const Outcome outcome = supple(kept);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(read("bar.supple"), whole);
 }
 
 TEST_F(ReduceCommandTest, TakesHexahedraAndQuadraticTets) {
