@@ -118,7 +118,8 @@ void draw_energies(const std::filesystem::path& path, const Simulation& run) {
 }
 
 Json report_json(const SimulateCommand& command, const Scene& scene, const SimulationOptions& options,
-                 const Simulation& run, const Effort& effort, const std::optional<IndicatedError>& error) {
+                 const Simulation& run) {
+  const Effort& effort = run.effort;
   Json json;
   json["command"] = "simulate";
   json["version"] = SUPPLE_VERSION;
@@ -128,67 +129,77 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["scene"] = command.scene ? command.scene->string() : "pluck";
   json["description"] = scene.description;
   json["status"] = to_string(run.ending);
-  json["duration"] = run.last_good().time;
+  json["duration"] = run.last_good.time;
   json["step"] = options.step;
-  json["steps"] = run.num_steps();
+  json["steps"] = run.num_steps;
   json["integrator"] = options.integrator.name;
   for (const auto& [option, value] : options.integrator.options) json["integrator_options"][option] = value;
   json["solver"] = name_of_solver(step_solvers, options.steps.solver);
   json["tolerance"] = options.steps.tolerance;
   if (!command.full) json["precision"] = name_of(options.precision);
-  json["steps_per_second"] = effort.steps_per_second;
-  json["mean_iterations"] = effort.mean_iterations;
+  json["steps_per_second"] = effort.steps_per_second();
+  json["mean_iterations"] = effort.mean_iterations();
   json["most_iterations"] = effort.most_iterations;
   json["refreshes"] = effort.refreshes;
   json["worst_residual"] = effort.worst_residual;
   json["missed_steps"] = effort.missed;
   json["halved_steps"] = run.halved_steps;
-  const EnergyBalance& energy = run.last_good().energy;
-  json["energy"] = {{"kinetic", energy.kinetic},        {"elastic", energy.elastic}, {"work", energy.work},
-                    {"damped", energy.damped},          {"made", energy.made()},     {"most_made", effort.energy_made},
-                    {"most_taken", effort.energy_taken}};
-  if (error)
-    json["indicated_error"] = {{"relative", error->relative},
-                               {"worst", error->worst},
-                               {"worst_time", error->worst_time},
-                               {"estimates", run.errors.size()},
-                               {"beyond_training", error->beyond_training},
-                               {"share_of_steps", run.estimate_seconds / run.integration_seconds}};
+  json["rescued_parts"] = run.rescued_parts;
+  const EnergyBalance& energy = run.last_good.energy;
+  json["energy"] = {{"kinetic", energy.kinetic},
+                    {"elastic", energy.elastic},
+                    {"work", energy.work},
+                    {"damped", energy.damped},
+                    {"made", energy.made()},
+                    {"most_made", effort.energy_made()},
+                    {"most_taken", effort.energy_taken()}};
+  if (run.indicated.estimates > 0)
+    json["indicated_error"] = {{"relative", run.indicated.relative()},
+                               {"worst", run.indicated.worst()},
+                               {"worst_time", run.indicated.worst_time},
+                               {"estimates", run.indicated.estimates},
+                               {"beyond_training", run.indicated.beyond_training},
+                               {"share_of_steps", run.estimate_seconds / effort.seconds}};
+  json["rows_every"] = run.stride;
   json["frames"] = run.times.size();
   json["every"] = options.every;
   json["tracked"] = Json::array();
   for (std::size_t j = 0; j < scene.track.size(); ++j)
-    json["tracked"].push_back({{"node", scene.track[j]},
-                               {"largest_displacement", run.tracked.middleCols<3>(3 * j).rowwise().norm().maxCoeff()}});
+    json["tracked"].push_back({{"node", scene.track[j]}, {"largest_displacement", run.reach[static_cast<Index>(j)]}});
   json["threads"] = num_threads();
   return json;
 }
 
 void print_summary(const SimulateCommand& command, const Scene& scene, const SimulationOptions& options,
-                   const Simulation& run, const Effort& effort, const std::optional<IndicatedError>& error,
-                   double reconstruction) {
+                   const Simulation& run, double reconstruction) {
+  const Effort& effort = run.effort;
   Rows rows{
       {"scene", scene.description},
       {"system", (command.full ? "full, " : "reduced, ") + shown_count(run.unknowns) + " unknowns"},
-      {"steps", shown_count(run.num_steps()) + " of " + shown(options.step, 3) + " s"},
-      {"speed", shown(effort.steps_per_second) + " steps/s, " + shown(effort.steps_per_second * options.step, 3) +
+      {"steps", shown_count(run.num_steps) + " of " + shown(options.step, 3) + " s"},
+      {"speed", shown(effort.steps_per_second()) + " steps/s, " + shown(effort.steps_per_second() * options.step, 3) +
                     " times real time"},
-      {"iterations", shown(effort.mean_iterations, 3) + " a step, " + std::to_string(effort.most_iterations) +
+      {"iterations", shown(effort.mean_iterations(), 3) + " a step, " + std::to_string(effort.most_iterations) +
                          " at most; " + shown_count(effort.refreshes) + " tangents"},
       {"residual", "at most " + shown(effort.worst_residual, 2) + ", asked for " + shown(options.steps.tolerance)}};
-  if (run.halved_steps > 0) rows.emplace_back("halved steps", shown_count(run.halved_steps) + " were taken in parts");
-  rows.emplace_back("energy balance", "the integrator made at most " + shown_percent(effort.energy_made) +
-                                          " of what loads brought, took at most " + shown_percent(effort.energy_taken));
-  if (error)
-    rows.emplace_back("indicated error", shown_percent(error->relative) + ", at worst " + shown_percent(error->worst) +
-                                             " at t = " + shown(error->worst_time, 3) + " s");
+  if (run.halved_steps > 0)
+    rows.emplace_back(
+        "halved steps",
+        shown_count(run.halved_steps) + " were taken in parts" +
+            (run.rescued_parts > 0 ? ", " + shown_count(run.rescued_parts) + " of these by backward Euler" : ""));
+  rows.emplace_back("energy balance", "the integrator made at most " + shown_percent(effort.energy_made()) +
+                                          " of what loads brought, took at most " +
+                                          shown_percent(effort.energy_taken()));
+  if (run.indicated.estimates > 0)
+    rows.emplace_back("indicated error", shown_percent(run.indicated.relative()) + ", at worst " +
+                                             shown_percent(run.indicated.worst()) +
+                                             " at t = " + shown(run.indicated.worst_time, 3) + " s");
   if (reconstruction > 0)
     rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(run.times.size()), 3) +
                                             " ms a frame of all nodes");
   for (std::size_t j = 0; j < scene.track.size(); ++j)
-    rows.emplace_back(
-        "node " + std::to_string(scene.track[j]),
-        "displaced by at most " + shown(run.tracked.middleCols<3>(3 * j).rowwise().norm().maxCoeff(), 3) + " m");
+    rows.emplace_back("node " + std::to_string(scene.track[j]),
+                      "displaced by at most " + shown(run.reach[static_cast<Index>(j)], 3) + " m");
   if (!command.output.empty()) rows.emplace_back("results", command.output.string());
   print_rows(stdout, "simulation of " + command.model.string(), rows);
 }
@@ -209,12 +220,11 @@ void SimulateCommand::run() const {
   const Simulation result =
       full ? simulate_full(reduced.body, what, options, progress) : simulate_reduced(reduced, what, options, progress);
   times.add("setup", result.setup_seconds);
-  times.add("time steps", result.integration_seconds);
-  times.add("energies and frames", times.current() - result.setup_seconds - result.integration_seconds);
+  times.add("time steps", result.effort.seconds);
+  times.add("energies and frames", times.current() - result.setup_seconds - result.effort.seconds);
   times.restart();
-  const Effort effort(result);
-  std::optional<IndicatedError> error;
-  if (!result.errors.empty()) error.emplace(result.errors);
+  const Effort& effort = result.effort;
+  const IndicatedError& indicated = result.indicated;
   double reconstruction = 0;
   if (!output.empty()) {
     Trajectory trajectory = trajectory_of(result, options, !full);
@@ -235,27 +245,27 @@ void SimulateCommand::run() const {
     times.finish("results");
   }
   clear_progress();
-  Json report = report_json(*this, what, options, result, effort, error);
+  Json report = report_json(*this, what, options, result);
   report["reconstruction_seconds"] = reconstruction;
   report["seconds"] = json_seconds(times.seconds(), times.total());
   report["peak_memory"] = peak_resident_memory();
   if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) {
-    print_summary(*this, what, options, result, effort, error, reconstruction);
+    print_summary(*this, what, options, result, reconstruction);
     print_stages(stdout, times.seconds(), times.total());
   }
   write_json(json, report);
   if (!result.complete()) throw SolverError(reason_to_end(result, options) + "; the results end before it");
-  if (error && error->beyond_training > 0)
-    warn("from t = " + shown(error->first_beyond, 3) + " s on " + std::to_string(error->beyond_training) + " of " +
-         std::to_string(result.errors.size()) +
+  if (indicated.beyond_training > 0)
+    warn("from t = " + shown(indicated.first_beyond, 3) + " s on " + std::to_string(indicated.beyond_training) +
+         " of " + std::to_string(indicated.estimates) +
          " states are larger than what forces were fitted to; they may be wrong by more than is indicated");
   if (effort.makes_energy())
-    warn("the integrator, " + options.integrator.name + ", made " + shown_percent(effort.energy_made) +
+    warn("the integrator, " + options.integrator.name + ", made " + shown_percent(effort.energy_made()) +
          " of energy that no load brought; a shorter --step, or --integrator average-vector-field or backward-euler, "
          "may help");
   if (effort.missed > 0)
-    warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps()) + " steps missed the tolerance " +
+    warn(std::to_string(effort.missed) + " of " + std::to_string(result.num_steps) + " steps missed the tolerance " +
          shown(options.steps.tolerance) + " (worst residual " + shown(effort.worst_residual, 2) +
          "); try a shorter --step or --solver newton");
 }

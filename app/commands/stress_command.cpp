@@ -25,7 +25,7 @@ namespace {
 std::string in_a_cell(const StressRun& run) {
   switch (run.verdict()) {
     case Verdict::Sound:
-      return run.halved > 0 ? "sound, halved" : "sound";
+      return run.rescued > 0 ? "sound, rescued" : run.halved > 0 ? "sound, halved" : "sound";
     case Verdict::Warned:
       return run.energy_made > Effort::tolerated ? "made " + shown_percent(run.energy_made, 2)
                                                  : shown_count(run.missed) + " missed";
@@ -49,13 +49,13 @@ TextTable table_of(const std::vector<StressRun>& runs, const std::vector<double>
 }
 
 void write_runs(const std::filesystem::path& path, const std::vector<StressRun>& runs) {
-  CsvTable table{{"motion"}, {"integrator"},   {"steps_per_period"}, {"steps_asked"}, {"steps_done"},
-                 {"halved"}, {"missed"},       {"worst_residual"},   {"energy_made"}, {"energy_taken"},
-                 {"reach"},  {"seconds", "s"}, {"ending"},           {"verdict"}};
+  CsvTable table{{"motion"},       {"integrator"}, {"steps_per_period"}, {"steps_asked"},    {"steps_done"},
+                 {"halved"},       {"rescued"},    {"missed"},           {"worst_residual"}, {"energy_made"},
+                 {"energy_taken"}, {"reach"},      {"seconds", "s"},     {"ending"},         {"verdict"}};
   for (const StressRun& run : runs)
     table.add_row(run.hardship, run.integrator, run.steps_per_period, run.steps_asked, run.steps_done, run.halved,
-                  run.missed, run.worst_residual, run.energy_made, run.energy_taken, run.reach, run.seconds,
-                  to_string(run.ending), to_string(run.verdict()));
+                  run.rescued, run.missed, run.worst_residual, run.energy_made, run.energy_taken, run.reach,
+                  run.seconds, to_string(run.ending), to_string(run.verdict()));
   const ExitGuard guard;
   write_csv(path, table);
 }
@@ -69,6 +69,7 @@ Json runs_json(const std::vector<StressRun>& runs) {
                     {"steps_asked", run.steps_asked},
                     {"steps_done", run.steps_done},
                     {"halved_steps", run.halved},
+                    {"rescued_parts", run.rescued},
                     {"missed_steps", run.missed},
                     {"worst_residual", run.worst_residual},
                     {"energy_made", run.energy_made},

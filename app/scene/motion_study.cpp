@@ -34,10 +34,9 @@ MotionMeasure MotionStudy::measure(const ReducedModel& model, std::optional<doub
   SimulationOptions options = complete(scene, model);
   if (tolerance) options.steps.tolerance = *tolerance;
   Simulation run = simulate_reduced(model, scene, options, progress);
-  const Effort effort(run);
   MotionMeasure measure{.step_seconds = 0,
-                        .mean_iterations = effort.mean_iterations,
-                        .missed_steps = effort.missed,
+                        .mean_iterations = run.effort.mean_iterations(),
+                        .missed_steps = run.effort.missed,
                         .complete = run.complete(),
                         .trajectory_error = std::numeric_limits<double>::quiet_NaN()};
   if (reference_ && run.complete()) {
@@ -48,11 +47,11 @@ MotionMeasure MotionStudy::measure(const ReducedModel& model, std::optional<doub
   }
   std::vector<double> seconds;
   add_seconds(run, seconds);
-  double spent = run.integration_seconds;
+  double spent = run.effort.seconds;
   for (int runs = 1; runs < most_runs && spent < enough && run.complete(); ++runs) {
     run = simulate_reduced(model, scene, options, progress);
     add_seconds(run, seconds);
-    spent += run.integration_seconds;
+    spent += run.effort.seconds;
   }
   measure.step_seconds = median(std::move(seconds));
   return measure;

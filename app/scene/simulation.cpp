@@ -3,6 +3,7 @@
 #include <app/scene/solver_names.hpp>
 #include <core/stopwatch.hpp>
 #include <physics/body/body_system.hpp>
+#include <physics/time/backward_difference.hpp>
 #include <physics/time/integrator_library.hpp>
 #include <reduction/system/error_estimator.hpp>
 
@@ -92,25 +93,38 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
                      const Frame& frame, const Estimate& estimate, const Progress& progress) {
   Simulation result;
   result.unknowns = system.dim();
+  result.stride = (options.num_steps - 1) / Simulation::most_records + 1;
   const Index num_frames = options.num_steps / options.every + 1;
-  result.tracked.resize(options.num_steps + 1, 3 * static_cast<Index>(scene.track.size()));
-  result.steps.reserve(options.num_steps + 1);
+  const Index num_records = (options.num_steps - 1) / result.stride + 2;
+  const Index num_tracked = static_cast<Index>(scene.track.size());
+  result.tracked.resize(num_records, 3 * num_tracked);
+  result.reach.setZero(num_tracked);
+  result.steps.reserve(num_records);
 
   Stopwatch setup;
   SceneLoads loads(system, scene);
   ControlledIntegrator<AnySystem<MatrixType>> integrator(
       system, options.step, [&](double h) { return make_integrator(options.integrator, system, h, options.steps); },
-      options.steps.damping, options.control);
+      options.steps.damping, options.control,
+      [&](double h) {
+        using System = AnySystem<MatrixType>;
+        return AnyIntegrator<System>(std::make_unique<BackwardEuler<System>>(system, h, options.steps));
+      });
   State state = integrator.at_rest();
   integrator.balance(loads.at(0), state);
   result.setup_seconds = setup.seconds();
 
-  const auto record = [&](const StepReport& report, const EnergyBalance& energy, double seconds) {
-    const Index k = static_cast<Index>(result.steps.size());
-    result.steps.push_back({static_cast<double>(k) * options.step, energy, report.iterations, report.tangents,
-                            report.residual, seconds, report.status});
-    for (std::size_t j = 0; j < scene.track.size(); ++j)
-      result.tracked.template block<1, 3>(k, 3 * j) = system.displacement(state.u, scene.track[j]).transpose();
+  const auto record = [&](Index k, const StepRecord& step) {
+    result.last_good = step;
+    Vector displacements(3 * num_tracked);
+    for (Index j = 0; j < num_tracked; ++j) {
+      displacements.segment<3>(3 * j) = system.displacement(state.u, scene.track[j]);
+      result.reach[j] = std::max(result.reach[j], displacements.segment<3>(3 * j).norm());
+    }
+    if (k % result.stride == 0 || k == options.num_steps) {
+      result.tracked.row(static_cast<Index>(result.steps.size())) = displacements.transpose();
+      result.steps.push_back(step);
+    }
     if (k % options.every != 0) return;
     const Vector u = frame(state.u), v = frame(state.v);
     const Index f = static_cast<Index>(result.times.size());
@@ -120,7 +134,8 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
     }
     result.u.row(f) = u.transpose();
     result.v.row(f) = v.transpose();
-    result.times.push_back(result.steps.back().time);
+    result.times.push_back(step.time);
+    result.energies.push_back(step.energy);
   };
   // a load at the end of step k, whatever rounding has made of the state's time
   const auto during = [&](Index k) {
@@ -128,41 +143,51 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
       return loads.at(std::abs(t - end) <= 1e-9 * h ? end : t);
     };
   };
-  StepReport start;
-  start.status = Status::Converged;
-  start.residual = 0;
-  record(start, {}, 0);
+  record(0, {});
   for (Index k = 1; k <= options.num_steps; ++k) {
     Stopwatch watch;
     const StepReport report = integrator.step(during(k), state);
     state.time = static_cast<double>(k) * options.step;  // rounding does not add up
-    const double seconds = watch.seconds();
-    result.integration_seconds += seconds;
+    StepRecord step{.time = state.time,
+                    .energy = integrator.energies(),
+                    .iterations = report.iterations,
+                    .refreshes = report.tangents,
+                    .residual = report.residual,
+                    .seconds = watch.seconds(),
+                    .status = report.status};
     if (report.status == Status::NotFinite)
       result.ending = Ending::NotFinite;
-    else if (integrator.energies().made_share() > 1)
+    else if (step.energy.made_share() > 1)
       result.ending = Ending::EnergyFromNothing;
+    result.num_steps = k;
     if (!result.complete()) {
-      result.refused = integrator.energies();
-      result.steps.push_back(result.steps.back());
-      result.steps.back().residual = report.residual;
-      result.steps.back().status = report.status;
+      result.refused = step.energy;
+      step.time = result.last_good.time;
+      step.energy = result.last_good.energy;
+    }
+    result.effort.add(step);
+    if (!result.complete()) {
+      const Index last = static_cast<Index>(result.steps.size());
+      result.tracked.row(last) = result.tracked.row(last - 1).eval();
+      result.steps.push_back(step);
       break;
     }
-    record(report, integrator.energies(), seconds);
+    record(k, step);
     if (estimate && (k % estimate_every == 0 || k == options.num_steps)) {
       watch.restart();
-      result.errors.push_back(estimate(state.time, state.u));
+      const ErrorRecord error = estimate(state.time, state.u);
+      result.indicated.add(error);
+      if ((k / estimate_every) % result.stride == 0 || k == options.num_steps) result.errors.push_back(error);
       result.estimate_seconds += watch.seconds();
     }
     tell(progress, "time steps", static_cast<double>(k) / static_cast<double>(options.num_steps));
   }
   result.halved_steps = integrator.halved_steps();
+  result.rescued_parts = integrator.rescued_parts();
   const Index frames = static_cast<Index>(result.times.size());
   result.u.conservativeResize(frames, Eigen::NoChange);
   result.v.conservativeResize(frames, Eigen::NoChange);
   result.tracked.conservativeResize(static_cast<Index>(result.steps.size()), Eigen::NoChange);
-  if (!result.complete()) result.tracked.bottomRows(1) = result.tracked.row(result.tracked.rows() - 2).eval();
   return result;
 }
 
@@ -234,8 +259,8 @@ std::string_view to_string(Ending ending) {
 }
 
 std::string reason_to_end(const Simulation& run, const SimulationOptions& options) {
-  const std::string step = "step " + std::to_string(run.num_steps()) +
-                           " (t = " + shown(static_cast<double>(run.num_steps()) * options.step) + " s) ";
+  const std::string step = "step " + std::to_string(run.num_steps) +
+                           " (t = " + shown(static_cast<double>(run.num_steps) * options.step) + " s) ";
   if (run.ending == Ending::NotFinite) return step + "is not finite. A shorter --step or --solver newton may help";
   return step + "has " + shown(run.refused.kinetic + run.refused.elastic) + " J where loads have done " +
          shown(run.refused.work) + " J of work: energy from nothing, which " + options.integrator.name +
@@ -244,38 +269,29 @@ std::string reason_to_end(const Simulation& run, const SimulationOptions& option
          "backward-euler, which damps most, may help";
 }
 
-Effort::Effort(const Simulation& run) {
-  for (Index k = 1; k <= run.num_steps(); ++k) {
-    const StepRecord& step = run.steps[k];
-    mean_iterations += static_cast<double>(step.iterations) / static_cast<double>(run.num_steps());
-    most_iterations = std::max(most_iterations, step.iterations);
-    refreshes += step.refreshes;
-    if (std::isfinite(step.residual)) worst_residual = std::max(worst_residual, step.residual);
-    energy_made = std::max(energy_made, step.energy.made());
-    energy_taken = std::max(energy_taken, -step.energy.made());
-    missed += step.status != Status::Converged;
-  }
-  const double turnover = run.steps.back().energy.turnover;
-  energy_made = turnover > 0 ? energy_made / turnover : 0;
-  energy_taken = turnover > 0 ? energy_taken / turnover : 0;
-  if (run.integration_seconds > 0) steps_per_second = static_cast<double>(run.num_steps()) / run.integration_seconds;
+void Effort::add(const StepRecord& step) {
+  ++steps;
+  iterations += step.iterations;
+  most_iterations = std::max(most_iterations, step.iterations);
+  refreshes += step.refreshes;
+  missed += step.status != Status::Converged;
+  seconds += step.seconds;
+  if (std::isfinite(step.residual)) worst_residual = std::max(worst_residual, step.residual);
+  most_made_ = std::max(most_made_, step.energy.made());
+  most_taken_ = std::max(most_taken_, -step.energy.made());
+  turnover_ = std::max(turnover_, step.energy.turnover);
 }
 
-IndicatedError::IndicatedError(const std::vector<ErrorRecord>& errors) {
-  double squares = 0, sizes = 0, largest = 0;
-  for (const ErrorRecord& error : errors) {
-    squares += error.total * error.total;
-    sizes += error.size * error.size;
-    largest = std::max(largest, error.size);
-    if (error.total > worst) {
-      worst = error.total;
-      worst_time = error.time;
-    }
-    if (error.beyond_training && beyond_training++ == 0) first_beyond = error.time;
+void IndicatedError::add(const ErrorRecord& error) {
+  ++estimates;
+  squares_ += error.total * error.total;
+  sizes_ += error.size * error.size;
+  largest_ = std::max(largest_, error.size);
+  if (error.total > worst_) {
+    worst_ = error.total;
+    worst_time = error.time;
   }
-  if (largest == 0) return;  // nothing moved
-  relative = std::sqrt(squares / sizes);
-  worst /= largest;
+  if (error.beyond_training && beyond_training++ == 0) first_beyond = error.time;
 }
 
 Trajectory trajectory_of(const Simulation& run, const SimulationOptions& options, bool reduced) {
@@ -283,7 +299,7 @@ Trajectory trajectory_of(const Simulation& run, const SimulationOptions& options
                         .model = {},
                         .model_checksum = {},
                         .step = options.step,
-                        .steps_per_second = Effort(run).steps_per_second,
+                        .steps_per_second = run.effort.steps_per_second(),
                         .time = Eigen::Map<const Vector>(run.times.data(), static_cast<Index>(run.times.size())),
                         .kinetic = {},
                         .elastic = {},
@@ -293,10 +309,9 @@ Trajectory trajectory_of(const Simulation& run, const SimulationOptions& options
   for (Vector* values : {&trajectory.kinetic, &trajectory.elastic, &trajectory.work})
     values->resize(trajectory.num_frames());
   for (Index f = 0; f < trajectory.num_frames(); ++f) {
-    const StepRecord& step = run.steps[f * options.every];
-    trajectory.kinetic[f] = step.energy.kinetic;
-    trajectory.elastic[f] = step.energy.elastic;
-    trajectory.work[f] = step.energy.work;
+    trajectory.kinetic[f] = run.energies[f].kinetic;
+    trajectory.elastic[f] = run.energies[f].elastic;
+    trajectory.work[f] = run.energies[f].work;
   }
   return trajectory;
 }

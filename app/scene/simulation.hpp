@@ -9,6 +9,7 @@
 #include <physics/time/step_control.hpp>
 #include <reduction/model/reduced_model.hpp>
 
+#include <cmath>
 #include <vector>
 
 namespace supple {
@@ -55,54 +56,79 @@ enum class Ending {
 };
 std::string_view to_string(Ending ending);  ///< "complete", "not-finite", "energy-from-nothing"
 
-struct Simulation {
-  Index unknowns = 0;
-  std::vector<StepRecord> steps;  ///< the first is the start; where it ends early, the last repeats the one before
-  Ending ending = Ending::Complete;
-  EnergyBalance refused;      ///< energies of the step that was not taken, where it would have had too much
-  RowMatrix tracked;          ///< one row a step: displacements of the scene's tracked nodes [m]
-  std::vector<double> times;  ///< of the frames [s]
-  /// Frames × coordinates: reduced coordinates, or displacements [m] and velocities [m/s] of all nodes.
-  RowMatrix u, v;
-  std::vector<ErrorRecord> errors;  ///< of a reduced model that has an indicator, every fourth step
-  double setup_seconds = 0;         ///< system, loads, first factorisation
-  double integration_seconds = 0;   ///< the steps alone
-  double estimate_seconds = 0;      ///< the estimates of the error alone
-
-  Index halved_steps = 0;  ///< steps that were taken in parts
-
-  Index num_steps() const { return static_cast<Index>(steps.size()) - 1; }
-  bool complete() const { return ending == Ending::Complete; }
-  const StepRecord& last_good() const { return steps[steps.size() - (complete() ? 1 : 2)]; }
-};
-
-/// What ended it, with the step and what may help. \pre it is not complete.
-std::string reason_to_end(const Simulation& run, const SimulationOptions& options);
-
-/// What the steps took, all together.
+/// What the steps of a run took, all together.
 struct Effort {
-  double mean_iterations = 0, worst_residual = 0, steps_per_second = 0;
-  Index most_iterations = 0, refreshes = 0, missed = 0;
-  /// The most energy that the integrator had made, and the most it had taken, at any time, over the turnover of the run.
-  double energy_made = 0, energy_taken = 0;
+  Index steps = 0, iterations = 0, most_iterations = 0, refreshes = 0, missed = 0;
+  double seconds = 0;         ///< wall-clock time of the steps alone
+  double worst_residual = 0;  ///< of those that are finite
 
-  explicit Effort(const Simulation& run);
-  bool makes_energy() const { return energy_made > tolerated; }
+  void add(const StepRecord& step);
+
+  double mean_iterations() const {
+    return steps > 0 ? static_cast<double>(iterations) / static_cast<double>(steps) : 0;
+  }
+  double steps_per_second() const { return seconds > 0 ? static_cast<double>(steps) / seconds : 0; }
+  /// The most energy that the integrator had made, and the most it had taken, at any time, over the turnover of the run.
+  double energy_made() const { return turnover_ > 0 ? most_made_ / turnover_ : 0; }
+  double energy_taken() const { return turnover_ > 0 ? most_taken_ / turnover_ : 0; }
+  bool makes_energy() const { return energy_made() > tolerated; }
 
   static constexpr double tolerated = 0.01;  ///< what may be made without a warning
+
+ private:
+  double most_made_ = 0, most_taken_ = 0, turnover_ = 0;  // [J]
 };
 
 /// Error of a motion by its estimates.
 struct IndicatedError {
-  double relative = 0;        ///< rms of the estimates over rms of the displacements
-  double worst = 0;           ///< largest estimate over the largest displacement
+  Index estimates = 0;
   double worst_time = 0;      ///< [s]
   Index beyond_training = 0;  ///< estimates that were for states larger than what forces were fitted to
   double first_beyond = 0;    ///< time of the first of these [s]
 
-  /// \param errors  at least one.
-  explicit IndicatedError(const std::vector<ErrorRecord>& errors);
+  void add(const ErrorRecord& error);
+
+  /// Rms of the estimates over rms of the displacements; 0 where nothing moved.
+  double relative() const { return largest_ > 0 ? std::sqrt(squares_ / sizes_) : 0; }
+  /// Largest estimate over the largest displacement.
+  double worst() const { return largest_ > 0 ? worst_ / largest_ : 0; }
+
+ private:
+  double squares_ = 0, sizes_ = 0, largest_ = 0, worst_ = 0;
 };
+
+/// A run, in memory that does not grow with the number of its steps: records of every step, or, where there are more than
+/// most_records steps, of every `stride`-th, which is enough for tables and plots. Sums and extremes count all steps.
+struct Simulation {
+  static constexpr Index most_records = 100'000;
+
+  Index unknowns = 0;
+  Index num_steps = 0;            ///< that were taken, the one that ended the run included
+  Index stride = 1;               ///< steps from record to record
+  std::vector<StepRecord> steps;  ///< the first is the start; where it ends early, the last repeats the last good one
+  RowMatrix tracked;              ///< one row a record: displacements of the scene's tracked nodes [m]
+  Vector reach;                   ///< largest displacement of each tracked node [m]
+  Effort effort;
+  Ending ending = Ending::Complete;
+  EnergyBalance refused;                ///< energies of the step that was not taken, where it would have had too much
+  StepRecord last_good;                 ///< the last step that was taken
+  std::vector<double> times;            ///< of the frames [s]
+  std::vector<EnergyBalance> energies;  ///< of the frames
+  /// Frames × coordinates: reduced coordinates, or displacements [m] and velocities [m/s] of all nodes.
+  RowMatrix u, v;
+  std::vector<ErrorRecord> errors;  ///< of a reduced model that has an indicator, every fourth step, or stride of these
+  IndicatedError indicated;
+  double setup_seconds = 0;     ///< system, loads, first factorisation
+  double estimate_seconds = 0;  ///< the estimates of the error alone
+
+  Index halved_steps = 0;   ///< steps that were taken in parts
+  Index rescued_parts = 0;  ///< of these parts, those that backward Euler took, for the integrator had failed
+
+  bool complete() const { return ending == Ending::Complete; }
+};
+
+/// What ended it, with the step and what may help. \pre it is not complete.
+std::string reason_to_end(const Simulation& run, const SimulationOptions& options);
 
 /// Its frames, of no model in a file yet. \param reduced  whether they are reduced coordinates.
 Trajectory trajectory_of(const Simulation& run, const SimulationOptions& options, bool reduced);

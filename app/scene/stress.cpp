@@ -153,20 +153,19 @@ StressRun endure(const ReducedModel& model, const Hardship& hardship, const std:
   if (full) options = for_full_system(options);
   const Simulation run =
       full ? simulate_full(model.body, scene, options, nullptr) : simulate_reduced(model, scene, options, nullptr);
-  const Effort effort(run);
   return {.hardship = std::string(hardship.info.name),
           .integrator = integrator,
           .steps_per_period = steps_per_period,
           .steps_asked = options.num_steps,
-          .steps_done = run.num_steps() - (run.complete() ? 0 : 1),
+          .steps_done = run.num_steps - (run.complete() ? 0 : 1),
           .halved = run.halved_steps,
-          .missed = effort.missed,
-          .worst_residual = effort.worst_residual,
-          .energy_made = effort.energy_made,
-          .energy_taken = effort.energy_taken,
-          .reach = run.tracked.leftCols<3>().rowwise().norm().maxCoeff() /
-                   bounding_box(node_positions(model.body)).diagonal(),
-          .seconds = run.integration_seconds,
+          .rescued = run.rescued_parts,
+          .missed = run.effort.missed,
+          .worst_residual = run.effort.worst_residual,
+          .energy_made = run.effort.energy_made(),
+          .energy_taken = run.effort.energy_taken(),
+          .reach = run.reach[0] / bounding_box(node_positions(model.body)).diagonal(),
+          .seconds = run.effort.seconds,
           .ending = run.ending};
 }
 

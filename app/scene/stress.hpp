@@ -46,7 +46,7 @@ std::string_view to_string(Verdict verdict);
 struct StressRun {
   std::string hardship, integrator;  ///< by name; as it was chosen
   double steps_per_period = 0;
-  Index steps_asked = 0, steps_done = 0, halved = 0, missed = 0;
+  Index steps_asked = 0, steps_done = 0, halved = 0, rescued = 0, missed = 0;
   double worst_residual = 0;
   double energy_made = 0, energy_taken = 0;  ///< see Effort
   double reach = 0;                          ///< largest displacement of the tracked node over the diagonal

@@ -30,6 +30,28 @@ class SimulateCommandTest : public SuppleProcess {
   CsvTable table(const std::string& name) const { return read_csv(folder / name); }
 };
 
+TEST_F(SimulateCommandTest, KeepsARowOfSeveralStepsInLongRuns) {
+  const Outcome made = supple({"reduce", "bar:2x1x1", "-o", "bar.supple", "--fix", "x<=0", "--subspace", "modal",
+                               "--modes", "2", "--selector", "all", "--recipe", "subspace", "--held-out", "0"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const json report = this->report({"simulate", "bar.supple", "-o", "run", "--step", "1e-4", "--time", "10.0001",
+                                    "--frames", "none", "--every", "20000"});
+  EXPECT_EQ(report["steps"], 100'001);  // one more than there is a row for each
+  EXPECT_EQ(report["rows_every"], 2);
+  EXPECT_EQ(report["frames"], 6);
+  for (const char* name : {"run/energies.csv", "run/tracked.csv"}) {
+    const Vector time = table(name).numbers("time");
+    ASSERT_EQ(time.size(), 50'002) << name;
+    for (Index k = 0; k < time.size(); ++k)
+      ASSERT_NEAR(time[k], 1e-4 * static_cast<double>(std::min<Index>(2 * k, 100'001)), 1e-9) << name;
+  }
+  // sums and extremes count all steps
+  const CsvTable energies = table("run/energies.csv");
+  EXPECT_GE(report["most_iterations"], energies.numbers("iterations").maxCoeff());
+  EXPECT_GE(report["worst_residual"], energies.numbers("residual").tail(50'001).maxCoeff());
+  EXPECT_NEAR(report["mean_iterations"], energies.numbers("iterations").sum() / 50'001, 0.05);
+}
+
 TEST_F(SimulateCommandTest, WritesWhatItReports) {
   reduce_bar();
   const json report =
