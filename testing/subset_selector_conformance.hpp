@@ -270,6 +270,24 @@ TYPED_TEST_P(SubsetSelectorConformance, BearsCopiesOfColumns) {
   for (Index s : {5, 20, 60}) this->expect_sound_answer(problem, this->request(s));
 }
 
+TYPED_TEST_P(SubsetSelectorConformance, BearsColumnsThatHardlyDiffer) {
+  for (const double apart : {1e-6, 1e-9, 1e-12, 1e-15}) {
+    Matrix A(this->rows, this->cols);
+    A << this->matrix().leftCols(30), this->matrix().leftCols(30), this->matrix().leftCols(30);
+    A += apart * gaussian(this->rows, this->cols, 9);
+    const DenseProblem problem(A, this->rhs(A), 4);
+    for (Index s : {5, 20, 60}) this->expect_sound_answer(problem, this->request(s));
+  }
+}
+
+TYPED_TEST_P(SubsetSelectorConformance, NeedsNothingWhereBIsOrthogonalToAllColumns) {
+  Matrix A = this->matrix();
+  A.topRows(8).setZero();
+  Vector b = Vector::Zero(this->rows);
+  b.head(8).setOnes();
+  EXPECT_EQ(this->expect_sound_answer(DenseProblem(A, b, 4), this->request(12)).size(), 0);
+}
+
 TYPED_TEST_P(SubsetSelectorConformance, BearsColumnsOfVeryDifferentScale) {
   Matrix A = this->matrix();
   const Vector b = this->rhs(A);
@@ -356,8 +374,9 @@ REGISTER_TYPED_TEST_SUITE_P(SubsetSelectorConformance, AnswersSoundly, GivesTheS
                             StartsFromAnEarlierSelection, IsNoWorseThanABetterStart, ReachesTheTargetErrorOrSaysWhyNot,
                             NeedsNoSizeForATargetError, ChoosesOneColumn, TakesAllColumnsOfASmallProblem,
                             BearsASizeBeyondTheRank, NeedsNothingWhereBIsZero, NeverTakesAZeroColumn,
-                            BearsCopiesOfColumns, BearsColumnsOfVeryDifferentScale, GivesTheSameBitsInAnyUnits,
-                            RefusesUnitsInWhichSquaresAreNoNumbers, RefusesNumbersThatAreNotFinite,
-                            RefusesRequestsThatMakeNoSense, AsksForHeldOutErrors);
+                            BearsCopiesOfColumns, BearsColumnsThatHardlyDiffer,
+                            NeedsNothingWhereBIsOrthogonalToAllColumns, BearsColumnsOfVeryDifferentScale,
+                            GivesTheSameBitsInAnyUnits, RefusesUnitsInWhichSquaresAreNoNumbers,
+                            RefusesNumbersThatAreNotFinite, RefusesRequestsThatMakeNoSense, AsksForHeldOutErrors);
 
 }  // namespace supple::test

@@ -8,7 +8,9 @@
 #include <AnasaziBlockKrylovSchurSolMgr.hpp>
 #include <Eigen/Dense>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -20,19 +22,20 @@ namespace supple {
 namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-constexpr double zero_energy = 1e-13;         // times ‖A‖: below, an eigenvalue of A is taken for zero
+constexpr double zero_energy = 1e-13;         // times |y|ᵀ |A| |y|: below, an eigenvalue of A is taken for zero
 constexpr double largest_rigid_force = 1e-6;  // times ‖A‖
 constexpr Index dense_rows = 300;             // up to here a dense solver is as fast
 
-/// Y = A X for a symmetric A: the columns of A serve as rows.
-Matrix product(const SparseMatrix& A, MatrixIn X) {
+/// Y = A X for a symmetric A: the columns of A serve as rows. Or |A| X, where entries(a) is |a|.
+template <typename Entries = std::identity>
+Matrix product(const SparseMatrix& A, MatrixIn X, const Entries& entries = {}) {
   const RowMatrix by_rows = X;
   RowMatrix Y(X.rows(), X.cols());
   parallel_ranges(A.cols(), 4096, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
       Y.row(i).setZero();
       for (SparseMatrix::InnerIterator entry(A, i); entry; ++entry)
-        Y.row(i) += entry.value() * by_rows.row(entry.row());
+        Y.row(i) += entries(entry.value()) * by_rows.row(entry.row());
     }
   });
   return Y;
@@ -44,6 +47,24 @@ struct StandardProblem {
   SparseMatrix A;
   Matrix deflated;  // orthonormal
   double norm = 0;  // ‖A‖_∞, at least the largest eigenvalue
+  // Of the column sums of |A|, the median and the smallest: slivers of almost no mass, and stiff parts, have the largest.
+  double bulk = 0, softest = 0;
+
+  /// Whether a dense solver, whose errors are relative to the largest eigenvalue, would lose digits of the small ones.
+  bool is_graded() const { return norm > 1e4 * softest; }
+};
+
+/// What rounding may do to products of A with the columns of Y: the sizes of what cancels in them. A few stiff and light
+/// nodes, which soft modes hardly see, make ‖A‖ a poor bound.
+struct Rounding {
+  Vector energies;  // |y|ᵀ |A| |y|
+  Vector forces;    // ‖ |A| |y| ‖
+
+  Rounding(const SparseMatrix& A, MatrixIn Y) {
+    const Matrix sizes = Y.cwiseAbs(), sums = product(A, sizes, [](double a) { return std::abs(a); });
+    energies = sizes.cwiseProduct(sums).colwise().sum().transpose();
+    forces = sums.colwise().norm().transpose();
+  }
 };
 
 StandardProblem standard_problem(const SparseMatrix& K, const Vector& M_diagonal, const Matrix& rigid) {
@@ -75,6 +96,9 @@ StandardProblem standard_problem(const SparseMatrix& K, const Vector& M_diagonal
     throw InputError("stiffness over mass is " + norm.str() +
                      " 1/s², expected 1e-120 to 1e120; are the units of stiffness and density right?");
   }
+  std::nth_element(column_sums.begin(), column_sums.begin() + n / 2, column_sums.end());
+  problem.bulk = std::max(column_sums[n / 2], 1e-20 * problem.norm);
+  problem.softest = std::max(column_sums.minCoeff(), 1e-20 * problem.norm);
   Random random(0);
   Matrix probes(n, 2);
   for (double& value : probes.reshaped()) value = random.normal();
@@ -135,8 +159,8 @@ class ShiftedInverse {
     const Index n = problem.A.rows();
     // For a compact solid of N nodes, (π/L)² against (2/h)² with L/h = N^{1/3}. Slender ones have a far lower
     // frequency yet, and a shift that is much too small does less harm than one that is too large.
-    const double first_guess = 1e-6 * problem.norm * std::pow(static_cast<double>(n) / 3, -2.0 / 3);
-    const double smallest = 1e-12 * problem.norm;
+    const double first_guess = 1e-6 * problem.bulk * std::pow(static_cast<double>(n) / 3, -2.0 / 3);
+    const double smallest = 1e-12 * problem.softest;
     shift_ = std::max(first_guess, smallest);
     factorize();
     for (int attempt = 0; attempt < 4; ++attempt) {
@@ -185,9 +209,10 @@ class ShiftedInverse {
         solve(X, X);
       }
       project_out(problem_.deflated, X);
-      const Vector values = rayleigh_ritz(problem_.A, std::move(X)).values;
-      for (const double value : values)
-        if (value > zero_energy * problem_.norm && value > 1e-6 * values.tail(1)[0]) return value;
+      const Pairs rough = rayleigh_ritz(problem_.A, std::move(X));
+      const Vector zero = zero_energy * Rounding(problem_.A, rough.vectors).energies;
+      for (Index j = 0; j < zero.size(); ++j)
+        if (rough.values[j] > zero[j] && rough.values[j] > 1e-6 * rough.values.tail(1)[0]) return rough.values[j];
     }
     return std::numeric_limits<double>::infinity();
   }
@@ -273,6 +298,20 @@ Pairs dense_pairs(const StandardProblem& problem) {
   const Matrix projected = complement.transpose() * (problem.A * complement);
   const Eigen::SelfAdjointEigenSolver<Matrix> dense(0.5 * (projected + projected.transpose()));
   return {dense.eigenvalues(), complement * dense.eigenvectors()};
+}
+
+/// The `count` smallest pairs as the largest of the inverse, which a dense solver finds beside any stiff part.
+Pairs dense_pairs_of_inverse(const StandardProblem& problem, const ShiftedInverse& inverse, Index count) {
+  const Index n = problem.A.rows();
+  const auto apply_inverse = [&](Matrix X) {
+    project_out(problem.deflated, X);
+    inverse.solve(X, X);
+    project_out(problem.deflated, X);
+    return X;
+  };
+  const Matrix B = apply_inverse(Matrix::Identity(n, n));
+  const Eigen::SelfAdjointEigenSolver<Matrix> dense(0.5 * (B + B.transpose()));
+  return rayleigh_ritz(problem.A, apply_inverse(dense.eigenvectors().rightCols(count)));
 }
 
 struct SparseResult {
@@ -365,7 +404,15 @@ EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, 
   chosen.block_size = std::min(chosen.block_size, options.num_modes);
   Pairs pairs;
   bool complete = true;
-  if (n <= dense_rows || 4 * (options.num_modes + 8 * chosen.block_size) > available) {
+  const bool dense = problem.is_graded()
+                         ? available < 2 * options.num_modes + 4 * chosen.block_size
+                         : n <= dense_rows || 4 * (options.num_modes + 8 * chosen.block_size) > available;
+  if (dense && problem.is_graded()) {
+    const ShiftedInverse inverse(problem, options.seed);
+    pairs = dense_pairs_of_inverse(problem, inverse, options.num_modes);
+    result.shift = inverse.shift();
+    result.report.iterations = 1;
+  } else if (dense) {
     pairs = dense_pairs(problem);
     pairs.values.conservativeResize(options.num_modes);
     pairs.vectors.conservativeResize(Eigen::NoChange, options.num_modes);
@@ -382,15 +429,16 @@ EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, 
   const Matrix force = product(problem.A, pairs.vectors) - pairs.vectors * pairs.values.asDiagonal();
   result.omega_squared = std::move(pairs.values);
   const Index r = result.omega_squared.size();
+  const Rounding rounding(problem.A, pairs.vectors);
   result.residuals.resize(r);
   bool converged = complete && r == options.num_modes;
   for (Index j = 0; j < r; ++j) {
-    const double scale = std::max(result.omega_squared[j] + result.shift, zero_energy * problem.norm);
+    const double scale = std::max(result.omega_squared[j] + result.shift, zero_energy * rounding.energies[j]);
     result.residuals[j] = force.col(j).norm() / scale;
-    const double rounding = 10 * epsilon * problem.norm / scale;
-    converged = converged && result.residuals[j] <= std::max(options.tolerance, rounding);
+    const double cancelled = dense && !problem.is_graded() ? problem.norm : rounding.forces[j];
+    converged = converged && result.residuals[j] <= std::max(options.tolerance, 10 * epsilon * cancelled / scale);
   }
-  result.extra_zero_modes = num_zero_modes(result.omega_squared, zero_energy * problem.norm);
+  result.extra_zero_modes = num_zero_modes(result.omega_squared, zero_energy * rounding.energies);
   result.vectors = M_diagonal.cwiseSqrt().cwiseInverse().asDiagonal() * pairs.vectors;
   for (Index j = 0; j < r; ++j) {
     const auto phi = result.vectors.col(j);

@@ -31,8 +31,8 @@ struct EigenPairs {
   Vector residuals;      ///< ‖K φ − ω² M φ‖_{M⁻¹} / (ω² + σ), computed afresh for every pair
   Report report;         ///< iterations counts blocks of solves; residual is the largest of `residuals`
   Index missed = 0;      ///< modes the first search passed over and the completeness check put in
-  /// Leading pairs with ω² ≤ 1e-13 ‖M^{−1/2} K M^{−1/2}‖_∞ and ω² ≤ 1e-3 of the one that follows them: motions without
-  /// energy beyond `rigid`, such as hinges.
+  /// Leading pairs with ω² ≤ 1e-13 |φ|ᵀ |K| |φ|, what cancels in them, and ω² ≤ 1e-3 of the one that follows them: motions
+  /// without energy beyond `rigid`, such as hinges.
   Index extra_zero_modes = 0;
   /// Largest ‖K φ‖_{M⁻¹} / ‖M^{−1/2} K M^{−1/2}‖_∞ over the M-orthonormalised columns φ of `rigid`.
   double rigid_residual = 0;
@@ -43,12 +43,13 @@ struct EigenPairs {
 ///
 /// Block Krylov–Schur iteration (Anasazi) on (K + σ M)⁻¹ M with a sparse Cholesky factorisation; σ > 0 is a
 /// small fraction of the lowest flexible ω², so that free and hinged objects need no special treatment. Small
-/// problems go to a dense solver. The same seed gives the same bits for any num_threads().
+/// problems go to a dense solver; of their inverse, where parts of K over M are far larger than others. Digits of soft modes
+/// are kept beside stiff parts and slivers of almost no mass. The same seed gives the same bits for any num_threads().
 /// \param K           n × n, symmetric, positive semi-definite (up to σ), both triangles stored [N/m]
 /// \param M_diagonal  n masses > 0 [kg]
 /// \param rigid       n × k, known fields with K φ = 0, e.g. the rigid motions of a free object; may have no
 ///                    columns; dependent columns are dropped
-/// \return report.status is Converged if every residual meets the tolerance or the rounding error of K φ,
+/// \return report.status is Converged if every residual meets the tolerance or the rounding error of K φ, 10 ε |K| |φ|,
 ///         whichever is larger, and the completeness check (if asked for) came to an end. Otherwise
 ///         MaxIterations, with those pairs that were found: maybe fewer than num_modes.
 /// \throws std::invalid_argument if sizes differ, K is zero, not symmetric or not finite, a mass is not

@@ -1,6 +1,9 @@
 #include <physics/body/force_models.hpp>
 #include <physics/body/material_law.hpp>
+#include <physics/mesh/tet_mesh.hpp>
 #include <physics/model/discrete_shell.hpp>
+
+#include <algorithm>
 
 namespace supple {
 
@@ -16,6 +19,12 @@ auto of_cells(const SolidOf<Mesh>& solid, const MaterialLaw::CellModel<Mesh>& ma
 }  // namespace
 
 std::shared_ptr<const AnyModel<4>> force_model(const Solid& solid) {
+  const TetMesh& mesh = solid.mesh;
+  const auto exists = [&](Index v) { return v >= 0 && v < mesh.num_nodes(); };
+  for (Index e = 0; e < mesh.num_cells(); ++e)  // a model looks for nodes that do not exist, and for volumes < 0
+    if (std::ranges::all_of(mesh.cells[e], exists) && tet_orientation(mesh, e) == 0)
+      throw std::invalid_argument("tet " + std::to_string(e) +
+                                  " has no volume beyond rounding: its nodes lie in a plane; remove or repair it");
   return material_law(solid.law).tets(solid.mesh, solid.parameters, solid.material_of_cell);
 }
 std::shared_ptr<const AnyModel<8>> force_model(const HexSolid& solid) {

@@ -14,7 +14,14 @@ VibrationModes vibration_modes(const RestState& object, const ModeOptions& optio
   result.components = find_free_components(object.stencils, object.stencil_size, numbering);
   const Index n = numbering.num_nodes();
   if (object.positions.rows() != n || node_dim != 3) result.components.free.clear();
-  result.num_rigid = result.components.num_rigid_modes();
+  Matrix rigid(mass.size(), 0);
+  if (result.components.num_rigid_modes() > 0) {
+    const Matrix all = rigid_modes(object.positions, result.components);
+    Matrix over_unknowns(mass.size(), all.cols());
+    for (Index j = 0; j < all.cols(); ++j) over_unknowns.col(j) = numbering.restrict(all.col(j), node_dim);
+    rigid = mass_orthonormalize(over_unknowns, mass).W;  // a part on a line turns about it without moving
+  }
+  result.num_rigid = rigid.cols();
   const Index num_flexible = options.num_modes - result.num_rigid;
   require(options.num_modes >= 1, "number of modes is " + std::to_string(options.num_modes) + ", expected at least 1");
   require(num_flexible >= 1, "the object has " + std::to_string(result.num_rigid) + " rigid motions (" +
@@ -25,16 +32,6 @@ VibrationModes vibration_modes(const RestState& object, const ModeOptions& optio
                                                 ", but the system has only " + std::to_string(mass.size()) +
                                                 " unknowns");
 
-  Matrix rigid(mass.size(), 0);
-  if (result.num_rigid > 0) {
-    const Matrix all = rigid_modes(object.positions, result.components);
-    const auto over_unknowns = [&](const Matrix& full) {
-      Matrix restricted(mass.size(), full.cols());
-      for (Index j = 0; j < full.cols(); ++j) restricted.col(j) = numbering.restrict(full.col(j), node_dim);
-      return restricted;
-    };
-    rigid = mass_orthonormalize(over_unknowns(all), mass).W;
-  }
   const auto inputs = [&](Digest& digest) {
     digest.add(object.K).add(mass).add(rigid).add(num_flexible).add(options.tolerance).add(options.seed);
   };

@@ -4,6 +4,8 @@
 
 #include <Eigen/SVD>
 
+#include <cmath>
+
 namespace supple {
 
 DenseBasis PcaBasis::operator()(const RestState& object) const {
@@ -19,15 +21,24 @@ DenseBasis PcaBasis::operator()(const RestState& object) const {
   const double largest = snapshots.cwiseAbs().maxCoeff();
   require(largest > 0, "all snapshots are zero");
 
+  const double unit = std::ldexp(1.0, std::ilogb(largest));  // so that squares are numbers
   const Vector root = object.mass.cwiseSqrt();
-  const ThinQr qr = tall_qr(root.asDiagonal() * object.restrict(snapshots));
+  const Matrix weighted = root.asDiagonal() * object.restrict(snapshots / unit);
+  const ThinQr qr = tall_qr(weighted);
   const Eigen::BDCSVD<Matrix> svd(qr.R, Eigen::ComputeThinU);
   const Vector& sigma = svd.singularValues();
   SubspaceReport report;
-  report.singular_values = sigma;
+  report.singular_values = unit * sigma;
+  constexpr double smallest = 1e-12;  // of the largest singular value
   Index rank = 0;
-  while (rank < sigma.size() && sigma[rank] > 1e-12 * sigma[0]) ++rank;
+  while (rank < sigma.size() && sigma[rank] > smallest * sigma[0]) ++rank;
   report.dropped = snapshots.cols() - rank;
+  Index too_small = 0;
+  for (Index t = 0; t < weighted.cols(); ++t)
+    if (!snapshots.col(t).isZero(0) && weighted.col(t).norm() <= smallest * sigma[0]) ++too_small;
+  if (too_small > 0)
+    report.notes.push_back(std::to_string(too_small) + " of " + std::to_string(snapshots.cols()) +
+                           " snapshots are left out: they are smaller than 1e-12 of the largest");
   Index d = dimension > 0 ? std::min(dimension, rank) : rank;
   if (energy < 1) {
     double left_out = sigma.tail(sigma.size() - d).squaredNorm();

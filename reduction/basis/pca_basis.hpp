@@ -15,7 +15,8 @@ struct PcaBasis {
   Index dimension = 0;  ///< 0: no bound
   double energy = 1;    ///< share of Σ_t ‖u_t‖²_M that the subspace has to hold, in (0, 1]; 0.9999 leaves 1 % rms
 
-  /// \return report.singular_values are all min(n · node_dim, T) [m √kg]; `dropped` counts those that are zero.
+  /// \return report.singular_values are all min(n · node_dim, T) [m √kg]; `dropped` counts snapshots that bring no dimension,
+  /// and a note those of them that are no zeros but too small.
   /// \throws std::invalid_argument if snapshots do not fit the system, are not finite or all zero, or move
   /// fixed nodes; for a negative dimension or another share.
   DenseBasis operator()(const RestState& object) const;

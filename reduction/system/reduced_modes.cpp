@@ -11,7 +11,9 @@ ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index>
   if (eigen.info() != Eigen::Success) throw SolverError("eigenvalues of the reduced stiffness did not converge");
   const Vector eigenvalues = eigen.eigenvalues().cwiseMax(0);
   ReducedModes modes{eigenvalues.cwiseSqrt(), eigen.eigenvectors(), 0};
-  modes.num_zero = num_zero ? *num_zero : num_zero_modes(eigenvalues, 1e-10 * eigenvalues.maxCoeff());
+  modes.num_zero =
+      num_zero ? *num_zero
+               : num_zero_modes(eigenvalues, Vector::Constant(eigenvalues.size(), 1e-10 * eigenvalues.maxCoeff()));
   require(modes.num_zero <= eigenvalues.size(), "there are more motions without energy than modes");
   for (Index j = 0; j < modes.Phi.cols(); ++j) {  // one sign for every platform
     Index at;

@@ -7,6 +7,7 @@
 #include <sparse/problem/fitting_problem.hpp>
 
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 namespace supple {
@@ -77,25 +78,29 @@ class ForceFitting {
 
   /// Aᵀ r over all components: one sweep over components and poses.
   Vector transpose_times(VectorIn r) const {
-    return sweep_components(pack_poses<block>(pull_back(r)), [](const auto&, const auto& f, const auto& y) {
+    return sweep_components<1>(pack_poses<block>(pull_back(r)), [](const auto&, const auto& f, const auto& y) {
       Pack sum(0.0);
       for (int k = 0; k < Model::local_dofs; ++k) sum += f[k] * y[k];
-      return sum;
+      return Local<1, Pack>(sum);
     });
   }
 
-  /// ‖A e_j‖² for all components, computed once.
+  /// ‖A e_j‖² for all components, computed once; 0 where it cannot be told from rounding, as that of a sliver, whose large
+  /// local forces cancel.
   Vector squared_norms() const {
-    const auto compute = [&] {
-      return sweep_components(RowMatrix(), [&](const LocalMatrix<local>& DND, const auto& f, const auto&) {
-        Pack sum(0.0);
+    const auto compute = [&]() -> Vector {
+      Matrix sums = sweep_components<2>(RowMatrix(), [&](const LocalMatrix<local>& DND, const auto& f, const auto&) {
+        Local<2, Pack> sum = Local<2, Pack>::Constant(Pack(0.0));
         for (int a = 0; a < local; ++a) {
           Pack row(0.0);
           for (int c = 0; c < local; ++c) row += Pack(DND(c, a)) * f[first_dof + c];
-          sum += f[first_dof + a] * row;
+          sum[0] += f[first_dof + a] * row;
+          sum[1] += Pack(DND(a, a)) * f[first_dof + a] * f[first_dof + a];
         }
         return sum;
       });
+      for (Index i = 0; i < sums.rows(); ++i) sums(i, 0) = told_from_rounding(sums(i, 0), sums(i, 1));
+      return sums.col(0);
     };
     std::call_once(norms_->once, [&] { norms_->values = compute(); });
     return norms_->values;
@@ -196,10 +201,12 @@ class ForceFitting {
         const RowMatrix DND = row_products(E_.middleRows(i0 * rows_per_component, ni * rows_per_component),
                                            NE.middleRows(j0 * local, nj * local));
         for (Index j = 0; j < nj; ++j)
-          for (Index i = 0; i < ni; ++i)
-            G(i0 + i, j0 + j) = HH.template block<local, local>(i * local, j * local)
-                                    .cwiseProduct(DND.template block<local, local>(i * local, j * local))
-                                    .sum();
+          for (Index i = 0; i < ni; ++i) {
+            const auto products = HH.template block<local, local>(i * local, j * local)
+                                      .cwiseProduct(DND.template block<local, local>(i * local, j * local));
+            const bool own = index(i0 + i) == other.index(j0 + j);
+            G(i0 + i, j0 + j) = own ? told_from_rounding(products.sum(), products.diagonal().sum()) : products.sum();
+          }
       });
       if (symmetric)
         for (Index j = 0; j < size(); ++j)
@@ -216,11 +223,14 @@ class ForceFitting {
           const LocalMatrix<local> DND = own_products(E_.middleRows(k * rows_per_component, rows_per_component),
                                                       NE.middleRows((k - begin) * local, local));
           const auto H = H_.middleRows(k * local, local);
-          result[k] = 0;
+          double sum = 0, size = 0;
           for (int a = 0; a < local; ++a) {
-            result[k] += DND(a, a) * H.row(a).squaredNorm();
-            for (int c = 0; c < a; ++c) result[k] += 2 * DND(c, a) * H.row(a).dot(H.row(c));
+            const double own = DND(a, a) * H.row(a).squaredNorm();
+            sum += own;
+            size += own;
+            for (int c = 0; c < a; ++c) sum += 2 * DND(c, a) * H.row(a).dot(H.row(c));
           }
+          result[k] = told_from_rounding(sum, size);
         }
       });
       return result;
@@ -339,19 +349,24 @@ class ForceFitting {
           E.lazyProduct(NE.middleCols(x * E.cols(), E.cols()).transpose());
     return result;
   }
+  /// ‖aᵢ‖², a sum of products of rows of U and local forces, or 0 if that is all rounding of such products. \param size  those
+  /// of single rows with themselves.
+  static double told_from_rounding(double sum, double size) {
+    return sum > 256 * std::numeric_limits<double>::epsilon() * size || !std::isfinite(sum) ? sum : 0;
+  }
   /// Rows x, block + x, …
   static auto every_block_row(RowMatrix& M, int x) {
     return Eigen::Map<RowMatrix, 0, Eigen::OuterStride<>>(M.row(x).data(), M.rows() / block, M.cols(),
                                                           Eigen::OuterStride<>(block * M.cols()));
   }
 
-  /// Σ over poses of body(D N Dᵀ, scaled or plain f, y) for each component; y are fields of `packed`, if
-  /// there are any.
-  template <typename Body>
-  Vector sweep_components(const RowMatrix& packed, const Body& body) const {
+  /// Σ over poses of body(D N Dᵀ, scaled or plain f, y), `count` numbers, for each component, m × count; y are fields of
+  /// `packed`, if there are any.
+  template <int count, typename Body>
+  Matrix sweep_components(const RowMatrix& packed, const Body& body) const {
     const bool norms = packed.size() == 0;
     const Index m = cols(), num_rows = subspace_->W.rows();
-    std::vector<Pack> sums(m, Pack(0.0));
+    std::vector<Local<count, Pack>> sums(m, Local<count, Pack>::Constant(Pack(0.0)));
     std::vector<LocalMatrix<local>> DND;
     if (norms) {
       DND.resize(m);
@@ -385,8 +400,9 @@ class ForceFitting {
         }
       });
     }
-    Vector result(m);
-    for (Index i = 0; i < m; ++i) result[i] = sums[i].sum();
+    Matrix result(m, count);
+    for (Index i = 0; i < m; ++i)
+      for (int k = 0; k < count; ++k) result(i, k) = sums[i][k].sum();
     return result;
   }
 

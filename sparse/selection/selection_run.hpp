@@ -154,8 +154,9 @@ class SelectionRun {
         result.norms.segment(begin, size) = evaluated.norms;
       }
     }
+    const auto norms = result.norms.array();
     result.correlations =
-        (result.correlations.array().abs() > 1e-13 * b_norm_ * result.norms.array()).select(result.correlations, 0);
+        (norms > 0 && result.correlations.array().abs() > 1e-13 * b_norm_ * norms).select(result.correlations, 0);
     return result;
   }
 

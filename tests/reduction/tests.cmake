@@ -12,7 +12,8 @@ supple_test(exact_equilibria LABEL unit LINKS supple::reduction SOURCES reductio
 supple_test(relaxation LABEL unit LINKS supple::reduction SOURCES reduction/training/relaxation_test.cpp)
 supple_test(reduce LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/reduce_test.cpp)
 supple_test(sound_models LABEL unit LINKS supple::reduction
-  SOURCES reduction/pipeline/sound_models_test.cpp reduction/subspace/rigid_motions_test.cpp)
+  SOURCES reduction/pipeline/degenerate_objects_test.cpp reduction/pipeline/sound_models_test.cpp
+          reduction/subspace/rigid_motions_test.cpp)
 supple_test(models LABEL unit LINKS supple::reduction
   SOURCES reduction/pipeline/model_choice_test.cpp reduction/pipeline/model_ladder_test.cpp
           reduction/pipeline/model_series_test.cpp)

@@ -2,6 +2,11 @@
 #include <core/parallel.hpp>
 #include <core/random.hpp>
 #include <numerics/eigen/eigensolver.hpp>
+#include <physics/mesh/mass.hpp>
+#include <physics/model/tet_elasticity.hpp>
+#include <physics/system/full_system.hpp>
+#include <reduction/subspace/rigid_modes.hpp>
+#include <tests/support/meshes.hpp>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -266,12 +271,87 @@ TEST(Eigensolver, DropsDependentRigidFields) {
 TEST(Eigensolver, TakesASoftPartBesideAStiffOneForNoHinge) {
   const auto zero_modes = [](const std::vector<double>& eigenvalues) {
     const auto n = static_cast<Index>(eigenvalues.size());
-    SparseMatrix K(n, n);
-    for (Index i = 0; i < n; ++i) K.insert(i, i) = eigenvalues[i];
-    return smallest_eigenpairs(K, Vector::Ones(n), Matrix(n, 0), {.num_modes = 5, .progress = {}}).extra_zero_modes;
+    Random random(3);
+    const Matrix Q =
+        Eigen::HouseholderQR<Matrix>(Matrix::NullaryExpr(n, n, [&] { return random.normal(); })).householderQ();
+    const Matrix K = Q * Eigen::Map<const Vector>(eigenvalues.data(), n).asDiagonal() * Q.transpose();
+    const SparseMatrix symmetric = (0.5 * (K + K.transpose())).sparseView();
+    return smallest_eigenpairs(symmetric, Vector::Ones(n), Matrix(n, 0), {.num_modes = 5, .progress = {}})
+        .extra_zero_modes;
   };
-  EXPECT_EQ(zero_modes({5, 6, 60, 200, 800, 1e4, 1e7, 1e11, 1e15}), 0);
-  EXPECT_EQ(zero_modes({1e-3, 2e-3, 60, 200, 800, 1e4, 1e7, 1e11, 1e15}), 2);
+  EXPECT_EQ(zero_modes({0.1, 0.12, 1.2, 4, 16, 200, 2e5, 2e9, 2e13}), 0);
+  EXPECT_EQ(zero_modes({1e-5, 2e-5, 60, 200, 800, 1e4, 1e7, 1e9, 2e13}), 2);
+}
+
+// What rounding leaves of zero is measured where a mode moves: a soft part that no stiff one touches has digits of its own.
+TEST(Eigensolver, MeasuresRoundingWhereAModeMoves) {
+  SparseMatrix K(9, 9);
+  const std::vector<double> stiffnesses{1e-3, 2e-3, 60, 200, 800, 1e4, 1e7, 1e11, 1e15};
+  for (Index i = 0; i < 9; ++i) K.insert(i, i) = stiffnesses[i];
+  const EigenPairs pairs = smallest_eigenpairs(K, Vector::Ones(9), Matrix(9, 0), {.num_modes = 5, .progress = {}});
+  EXPECT_EQ(pairs.extra_zero_modes, 0);
+  EXPECT_EQ(pairs.report.status, Status::Converged);
+}
+
+// A node of almost no mass at the end of a spring as stiff as that is light, which is what a flat tet makes: the modes are
+// those without it, to what rounding of the spring does to the energy of the node it hangs on.
+TEST(Eigensolver, KeepsTheDigitsOfSoftModesBesideNodesOfAlmostNoMass) {
+  for (const Index side : {6, 9}) {  // few enough for a dense solver, and more
+    const SparseMatrix cube = cube_laplacian(side);
+    const Index n = cube.rows(), places = 3;
+    const Vector expected = cube_eigenvalues(side, 8);
+    for (const double flat : {1e-4, 1e-6, 1e-8, 1e-10}) {
+      Triplets entries;
+      for (Index j = 0; j < n; ++j)
+        for (SparseMatrix::InnerIterator entry(cube, j); entry; ++entry)
+          entries.emplace_back(entry.row(), j, entry.value());
+      Vector M = Vector::Ones(n + places);
+      for (Index k = 0; k < places; ++k) {
+        const Index light = n + k, at = (20 + 50 * k) % n;
+        M[light] = flat;
+        entries.emplace_back(light, light, 1 / flat);
+        entries.emplace_back(at, at, 1 / flat);
+        entries.emplace_back(light, at, -1 / flat);
+        entries.emplace_back(at, light, -1 / flat);
+      }
+      const EigenPairs pairs = smallest_eigenpairs(from_triplets(n + places, entries), M, Matrix(n + places, 0),
+                                                   {.num_modes = 8, .progress = {}});
+      EXPECT_EQ(pairs.report.status, Status::Converged) << side << ", " << flat;
+      EXPECT_EQ(pairs.extra_zero_modes, 0) << side << ", " << flat;
+      ASSERT_EQ(pairs.omega_squared.size(), 8);
+      // the nodes' mass, and ε / flat of three of n nodes
+      const double tolerance = 2 * flat + 4e-16 / flat + 1e-12;
+      EXPECT_LE((pairs.omega_squared - expected).cwiseAbs().maxCoeff(), tolerance) << side << ", " << flat;
+      const Matrix gram = pairs.vectors.transpose() * M.asDiagonal() * pairs.vectors;
+      EXPECT_LE((gram - Matrix::Identity(8, 8)).cwiseAbs().maxCoeff(), 1e-10);
+    }
+  }
+}
+
+TEST(Eigensolver, KeepsTheDigitsOfASoftPartBesideAStiffOne) {
+  for (const double contrast : {1e2, 1e4, 1e8, 1e12})
+    for (const Index side : {5, 8}) {
+      const SparseMatrix soft = cube_laplacian(side);
+      const Index n = soft.rows();
+      Triplets entries;
+      for (Index j = 0; j < n; ++j)
+        for (SparseMatrix::InnerIterator entry(soft, j); entry; ++entry) {
+          entries.emplace_back(entry.row(), j, entry.value());
+          entries.emplace_back(n + entry.row(), n + j, contrast * entry.value());
+        }
+      entries.emplace_back(0, n, -0.01);  // they touch
+      entries.emplace_back(n, 0, -0.01);
+      entries.emplace_back(0, 0, 0.01);
+      entries.emplace_back(n, n, 0.01);
+      const SparseMatrix K = from_triplets(2 * n, entries);
+      const EigenPairs pairs =
+          smallest_eigenpairs(K, Vector::Ones(2 * n), Matrix(2 * n, 0), {.num_modes = 6, .progress = {}});
+      EXPECT_EQ(pairs.report.status, Status::Converged);
+      Matrix held = soft;  // the other end hardly moves
+      held(0, 0) += 0.01;
+      const Vector expected = Eigen::SelfAdjointEigenSolver<Matrix>(held, Eigen::EigenvaluesOnly).eigenvalues().head(6);
+      EXPECT_LE((pairs.omega_squared - expected).cwiseAbs().maxCoeff(), 1e-4 / contrast + 1e-12) << contrast;
+    }
 }
 
 TEST(Eigensolver, CountsTheMotionsOfAHinge) {
@@ -358,6 +438,76 @@ TEST(Eigensolver, SolvesSmallProblemsDensely) {
   const Eigen::SelfAdjointEigenSolver<Matrix> dense{Matrix(free.K)};
   EXPECT_LE((pairs.omega_squared - dense.eigenvalues().tail(18)).cwiseAbs().maxCoeff(), 1e-13);
   EXPECT_EQ(pairs.shift, 0);
+}
+
+/// Number of eigenvalues of K φ = λ M φ below a bound, by Sylvester's law: negative ones of K − bound M.
+Index count_below(const SparseMatrix& K, const Vector& M, double bound) {
+  const Matrix shifted = Matrix(K) - bound * Matrix(M.asDiagonal());
+  return (Eigen::SelfAdjointEigenSolver<Matrix>(shifted, Eigen::EigenvaluesOnly).eigenvalues().array() < 0).count();
+}
+
+// A bar of square section bends either way at one frequency; modes may be asked for up to the middle of a pair.
+TEST(Eigensolver, FindsPairsOfASquareBarHoweverTheyAreCut) {
+  const HexMesh mesh = hex_box(14, 3, 3, {1.4, 0.3, 0.3});
+  const std::vector<Index> held = test::nodes_where(mesh, [](const Point& x) { return x[0] < 1e-9; });
+  const FullSystem system(SolidElasticity<TrilinearHex, StVenantKirchhoff>(
+                              mesh, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.3})),
+                          lumped_mass<TrilinearHex>(mesh, 1000.0), held);
+  const SparseMatrix& K = system.rest_stiffness();
+  const Vector& M = system.mass();
+  const Vector exact =
+      Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(Matrix(K), Matrix(M.asDiagonal()), Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  ASSERT_NEAR(exact[0], exact[1], 1e-9 * exact[0]) << "no pair";
+  for (const Index block_size : {1, 4})
+    for (Index num_modes = 1; num_modes <= 9; ++num_modes) {
+      const EigenPairs pairs = smallest_eigenpairs(K, M, Matrix(K.rows(), 0),
+                                                   {.num_modes = num_modes, .block_size = block_size, .progress = {}});
+      expect_eigenpairs(K, M, Matrix(K.rows(), 0), pairs);
+      ASSERT_EQ(pairs.omega_squared.size(), num_modes);
+      for (Index k = 0; k < num_modes; ++k) EXPECT_NEAR(pairs.omega_squared[k], exact[k], 1e-8 * exact[k]) << num_modes;
+      const double last = pairs.omega_squared[num_modes - 1];
+      EXPECT_LT(count_below(K, M, (1 - 1e-6) * last), num_modes);
+      EXPECT_GE(count_below(K, M, (1 + 1e-6) * last), num_modes);
+    }
+}
+
+// k equal boxes apart from each other: 6 k motions without energy, and every frequency k times.
+TEST(Eigensolver, FindsTheClustersOfManyFreeParts) {
+  const TetMesh part = test::perturbed(test::kuhn_box(2, 2, 2, 0.1), 0.01, 5);
+  constexpr Index count = 7;
+  TetMesh mesh;
+  mesh.nodes.resize(count * part.num_nodes(), 3);
+  for (Index c = 0; c < count; ++c) {
+    mesh.nodes.middleRows(c * part.num_nodes(), part.num_nodes()) =
+        part.nodes.rowwise() + Eigen::RowVector3d(static_cast<double>(c), 0, 0);
+    for (Tet tet : part.cells) {
+      for (Index& v : tet) v += c * part.num_nodes();
+      mesh.cells.push_back(tet);
+    }
+  }
+  const auto system_of = [](const TetMesh& some) {
+    return FullSystem(
+        TetElasticity<StVenantKirchhoff>(some, StVenantKirchhoff<double>::from({.young = 1e5, .poisson = 0.3})),
+        lumped_mass(some, 1000.0));
+  };
+  const auto one = system_of(part), all = system_of(mesh);
+  const Vector once =
+      Eigen::GeneralizedSelfAdjointEigenSolver<Matrix>(Matrix(one.rest_stiffness()), Matrix(one.mass().asDiagonal()))
+          .eigenvalues()
+          .tail(one.dim() - 6);
+  const RestState rest = all.rest_state();
+  const Matrix rigid =
+      rigid_modes(rest.positions, find_free_components(rest.stencils, rest.stencil_size, rest.numbering));
+  ASSERT_EQ(rigid.cols(), 6 * count);
+  for (const Index num_modes : {count - 1, count + 3, 4 * count + 2}) {
+    const EigenPairs pairs = smallest_eigenpairs(rest.K, rest.mass, rigid, {.num_modes = num_modes, .progress = {}});
+    expect_eigenpairs(rest.K, rest.mass, rigid, pairs);
+    EXPECT_EQ(pairs.extra_zero_modes, 0);
+    ASSERT_EQ(pairs.omega_squared.size(), num_modes);
+    for (Index k = 0; k < num_modes; ++k)
+      EXPECT_NEAR(pairs.omega_squared[k], once[k / count], 1e-8 * once[k / count]) << k << " of " << num_modes;
+  }
 }
 
 TEST(Eigensolver, GivesTheSameBitsForTheSameSeedAndAnyNumberOfThreads) {

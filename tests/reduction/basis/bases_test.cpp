@@ -1,14 +1,20 @@
 #include <numerics/linear/tall_qr.hpp>
+#include <physics/model/spring_model.hpp>
 #include <reduction/basis/affine_basis.hpp>
 #include <reduction/basis/joined_basis.hpp>
 #include <reduction/basis/pca_basis.hpp>
 #include <reduction/basis/skinning_modes.hpp>
+#include <reduction/basis/subspace_library.hpp>
 #include <testing/subspace_builder_conformance.hpp>
 #include <tests/support/bars.hpp>
 #include <tests/support/outside.hpp>
 #include <tests/support/plates.hpp>
 
 #include <gmock/gmock.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
 
 namespace supple::test {
 
@@ -114,6 +120,84 @@ TEST(PcaBasis, LeavesOutExactlyTheDiscardedSingularValues) {
     // no other subspace of this dimension does better
     const DenseBasis other = PcaBasis{.snapshots = snapshots.leftCols(d)}(system);
     EXPECT_GT(squared_error(other, system, snapshots), sigma.tail(12 - d).squaredNorm());
+  }
+}
+
+/// The largest distance of a snapshot from the span, over the largest snapshot, in the mass norm.
+double distance(const DenseBasis& basis, const StvkBar& system, const Matrix& snapshots) {
+  const Vector mass = system.rest_state().mass_of_rows(), root = mass.cwiseSqrt();
+  const Matrix U = basis.dense();
+  const Matrix rest = snapshots - U * (U.transpose() * (mass.asDiagonal() * snapshots));
+  return (root.asDiagonal() * rest).colwise().norm().maxCoeff() /
+         (root.asDiagonal() * snapshots).colwise().norm().maxCoeff();
+}
+
+/// UᵀMU = I to 1e-10, every snapshot in the span up to `tolerance` of the largest, and what was dropped counted.
+void expect_spans(const DenseBasis& basis, const StvkBar& system, const Matrix& snapshots, double tolerance) {
+  const Vector mass = system.rest_state().mass_of_rows();
+  const Matrix U = basis.dense();
+  EXPECT_TRUE(is_near(U.transpose() * mass.asDiagonal() * U, Matrix::Identity(U.cols(), U.cols()), 1e-10));
+  EXPECT_LE(distance(basis, system, snapshots), tolerance);
+  EXPECT_EQ(basis.report.dropped, snapshots.cols() - basis.dim());
+}
+
+TEST(PcaBasis, BearsSnapshotsThatHardlyDiffer) {
+  const StvkBar system = clamped_bar();
+  const Matrix one = random_snapshots(system, 1, 1), others = random_snapshots(system, 9, 9);
+  for (const double difference : {1e-2, 1e-6, 1e-10, 1e-14, 0.0}) {
+    SCOPED_TRACE(difference);
+    Matrix snapshots = one.replicate(1, 10);
+    snapshots.rightCols(9) += difference * (one.norm() / others.norm()) * others;
+    const DenseBasis basis = PcaBasis{.snapshots = snapshots}(system);
+    expect_spans(basis, system, snapshots, 1e-11);
+    if (difference >= 1e-10) {
+      EXPECT_EQ(basis.dim(), 10);
+      EXPECT_LE(distance(basis, system, Matrix(snapshots.rightCols(9).colwise() - snapshots.col(0))),
+                1e-13 / difference);
+    }
+    if (difference <= 1e-14) {
+      EXPECT_EQ(basis.dim(), 1);
+    }
+    EXPECT_TRUE(basis.report.notes.empty());
+  }
+}
+
+TEST(PcaBasis, BearsCopiesAndZeros) {
+  const StvkBar system = clamped_bar();
+  const Matrix some = random_snapshots(system, 3, 3);
+  Matrix snapshots = Matrix::Zero(some.rows(), 20);
+  for (const Index t : {0, 2, 3, 4, 9, 12, 13, 19}) snapshots.col(t) = some.col(t % 3);
+  const DenseBasis basis = PcaBasis{.snapshots = snapshots}(system);
+  EXPECT_EQ(basis.dim(), 3);
+  expect_spans(basis, system, snapshots, 1e-13);
+  EXPECT_TRUE(basis.report.notes.empty());
+}
+
+TEST(PcaBasis, SaysWhichSnapshotsAreTooSmallBesideOthers) {
+  const StvkBar system = clamped_bar();
+  Matrix snapshots = random_snapshots(system, 8, 8);
+  snapshots.col(6).setZero();
+  for (const Index t : {1, 4}) snapshots.col(t) *= 1e-8;
+  for (const Index t : {0, 2, 5}) snapshots.col(t) *= 1e8;
+  const DenseBasis basis = PcaBasis{.snapshots = snapshots}(system);
+  EXPECT_EQ(basis.dim(), 5);
+  Matrix all_but_small = snapshots;
+  all_but_small.col(1).setZero(), all_but_small.col(4).setZero();
+  expect_spans(basis, system, all_but_small, 1e-14);
+  EXPECT_THAT(basis.report.notes, testing::ElementsAre(testing::HasSubstr("2 of 8 snapshots are left out")));
+}
+
+TEST(PcaBasis, MindsNoUnits) {
+  const StvkBar system = clamped_bar();
+  const Matrix snapshots = random_snapshots(system, 6, 9);
+  const DenseBasis plain = PcaBasis{.snapshots = snapshots, .energy = 0.99}(system);
+  EXPECT_LT(plain.dim(), 6);
+  for (const double unit : {1e-200, 1e-30, 1e30, 1e200}) {
+    const DenseBasis basis = PcaBasis{.snapshots = unit * snapshots, .energy = 0.99}(system);
+    ASSERT_EQ(basis.dim(), plain.dim()) << unit;
+    EXPECT_TRUE(is_near(basis.report.singular_values / unit, plain.report.singular_values, 1e-12));
+    const Matrix overlap = basis.dense().transpose() * system.rest_state().mass_of_rows().asDiagonal() * plain.dense();
+    EXPECT_TRUE(is_near(overlap.cwiseAbs(), Matrix::Identity(plain.dim(), plain.dim()), 1e-10)) << unit;
   }
 }
 
@@ -225,6 +309,75 @@ TEST(JoinedBasis, ContainsBoth) {
   check(modal, ModalBasis{.num_modes = 11}, 9);
   check(PcaBasis{.snapshots = random_snapshots(system, 3, 3)}, skinning, 0);
   check(AffineBasis{}, JoinedBasis{modal, skinning}, 12);
+}
+
+TEST(JoinedBasis, OfPartsThatNearlyCoincideIsOrthonormal) {
+  const StvkBar system = clamped_bar();
+  const Vector mass = system.rest_state().mass_of_rows();
+  const DenseBasis first = PcaBasis{.snapshots = random_snapshots(system, 6, 6)}(system);
+  const Matrix away = random_snapshots(system, 6, 6);
+  for (const double difference : {1e-1, 1e-4, 1e-5, 1e-8, 1e-12, 0.0}) {
+    const Matrix moved = first.dense() + difference * away / away.norm() * first.dense().norm();
+    const DenseBasis second = PcaBasis{.snapshots = moved}(system);
+    const auto joined = join(first, second, system.rest_state().nodal_mass);
+    const Matrix U = joined.dense();
+    EXPECT_EQ(joined.dim(), difference >= 1e-5 ? 12 : 6) << difference;
+    EXPECT_EQ(joined.report.dropped, 12 - joined.dim());
+    EXPECT_TRUE(is_near(U.transpose() * mass.asDiagonal() * U, Matrix::Identity(U.cols(), U.cols()), 1e-10));
+    EXPECT_LT(outside(joined, system, first.dense()), 1e-10);
+    EXPECT_LT(outside(joined, system, second.dense()), 1e-5);
+  }
+}
+
+TEST(NamedSubspaces, OfPartsThatCoincideHaveTheDimensionsOfOne) {
+  for (const StvkBar& system : {clamped_bar(), free_bar()}) {
+    const RestState rest = system.rest_state();
+    const Vector mass = rest.mass_of_rows();
+    SubspaceChoice choice;
+    choice.modes = 9;
+    const auto built = [&](const std::string& name) {
+      choice.name = name;
+      return build_subspace(rest, choice, {});
+    };
+    const auto dense = [](const AnyBasis& basis) {
+      return std::visit([](const auto& some) { return Matrix(some->dense()); }, basis);
+    };
+    choice.snapshots = dense(built("extended")).leftCols(7) * random_matrix(7, 12, 1, 4);
+    for (const auto& [whole, sum] : {std::pair<std::string, std::string>{"extended", "extended+pca"},
+                                     {"extended", "modal+extended"},
+                                     {"derivatives", "derivatives+modal"}}) {
+      SCOPED_TRACE(sum);
+      const Matrix expected = dense(built(whole)), U = dense(built(sum));
+      EXPECT_EQ(U.cols(), expected.cols());
+      EXPECT_TRUE(is_near(U.transpose() * mass.asDiagonal() * U, Matrix::Identity(U.cols(), U.cols()), 1e-10));
+      const Matrix overlap = U.transpose() * mass.asDiagonal() * expected;
+      EXPECT_TRUE(is_near(overlap.transpose() * overlap, Matrix::Identity(expected.cols(), expected.cols()), 1e-6));
+    }
+  }
+}
+
+TEST(ExtendedModalBasis, OfFreeNodesOnALineLosesNoMode) {
+  // A straight chain of springs: turning about its line moves nothing, and leaving the line costs nothing.
+  constexpr Index count = 12;
+  Points nodes = Points::Zero(count, 3);
+  std::vector<std::array<Index, 2>> springs;
+  for (Index v = 0; v < count; ++v) {
+    nodes(v, 0) = 0.1 * static_cast<double>(v);
+    if (v > 0) springs.push_back({v - 1, v});
+  }
+  const FullSystem system(SpringModel(nodes, springs, 100.0), Vector::Constant(count, 0.01));
+  const Index free = 3 * count - (count - 1);  // motions without energy: all but those along the line
+  const VibrationModes modes = vibration_modes(system.rest_state(), {.num_modes = free + 3});
+  EXPECT_EQ(modes.num_rigid, 5);
+  EXPECT_EQ(modes.num_zero, free);
+  ASSERT_EQ(modes.omega.size(), free + 3);
+  for (Index k = 0; k < 3; ++k)  // free ends: 2 sqrt(k / m) sin(j π / 2 n)
+    EXPECT_NEAR(modes.omega[free + k], 200 * std::sin(static_cast<double>(k + 1) * std::numbers::pi / (2.0 * count)),
+                1e-6);
+  const NodalBasis basis = extend_modes(modes, nodes, Vector::Constant(count, 0.01));
+  const Matrix U = basis.dense();
+  EXPECT_TRUE(is_near(0.01 * U.transpose() * U, Matrix::Identity(U.cols(), U.cols()), 1e-10));
+  EXPECT_LT((modes.vectors - 0.01 * U * (U.transpose() * modes.vectors)).norm(), 1e-5);
 }
 
 TEST(TallQr, FactorizesAnyShape) {
