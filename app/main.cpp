@@ -18,6 +18,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
+#include <iostream>
 #include <new>
 #include <optional>
 #include <string>
@@ -41,6 +42,12 @@ int fail(int code, std::string message) {
   std::fflush(stdout);
   std::fprintf(stderr, "supple: %s\n", message.c_str());
   return code;
+}
+
+/// The code, unless what was printed got nowhere.
+int end_of_output(int code) {
+  std::cout.flush();
+  return std::fflush(stdout) == 0 && !std::ferror(stdout) ? code : fail(1, "stdout cannot be written");
 }
 
 /// "; did you mean --fix?" if a known word is near.
@@ -80,9 +87,9 @@ int run(int argc, char** argv) {
   std::apply([&](auto&... command) { (command.declare(app), ...); }, commands);
   try {
     app.parse(argc, argv);
-    return std::fflush(stdout) == 0 && !std::ferror(stdout) ? 0 : fail(1, "stdout cannot be written");
+    return end_of_output(0);
   } catch (const CLI::Success& asked) {  // --help, --version
-    return app.exit(asked);
+    return end_of_output(app.exit(asked));
   } catch (const CLI::ParseError& error) {
     const std::string stray = not_expected(app);
     return fail(2, stray.empty() ? error.what() : stray);

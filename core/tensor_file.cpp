@@ -28,6 +28,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t alignment = 64;
 constexpr std::size_t largest_header = 100'000'000;  // the limit of the reference implementation
+constexpr int deepest_header = 8;                    // ours have three levels
 constexpr int newest_layout = 1;
 constexpr std::string_view layout_key = "supple.layout";
 constexpr std::string_view header_key = "supple.xxh3";
@@ -41,7 +42,7 @@ std::string checksum(std::span<const std::byte> bytes) {
   return Digest().add(bytes).text();
 }
 
-/// Of the header without its own checksum, in the one spelling that dump() gives it.
+/// Of the header without its own checksum, in the one spelling that a writer gives it.
 std::string header_checksum(Json header) {
   header["__metadata__"].erase(std::string(header_key));
   const std::string text = header.dump();
@@ -202,14 +203,15 @@ TensorFile::TensorFile(const std::filesystem::path& path, Checksums checksums)
   if (head.find('\0') != head.npos) refuse("header: not valid JSON");  // the parser would take it for the end
 
   std::set<std::string> names;
-  const auto no_duplicates = [&](int depth, Json::parse_event_t event, Json& parsed) {
+  const auto check_event = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    if (depth > deepest_header) refuse("header: is nested too deeply");  // to be copied and spelled, one call a level
     if (event == Json::parse_event_t::key && depth == 1 && !names.insert(parsed.get<std::string>()).second)
       refuse("header: " + shown(parsed.get<std::string>()) + " appears twice");
     return true;
   };
   Json header;
   try {
-    header = Json::parse(head, no_duplicates);
+    header = Json::parse(head, check_event);
   } catch (const Json::exception&) {
     refuse("header: not valid JSON");
   }
@@ -223,7 +225,9 @@ TensorFile::TensorFile(const std::filesystem::path& path, Checksums checksums)
   if (layout != std::to_string(newest_layout))
     refuse("written in layout " + shown(layout) + " by another version of Supple; this one reads layout " +
            std::to_string(newest_layout));
-  if (text->at(std::string(header_key)) != header_checksum(header))
+  const std::string spelled = header.dump();  // other spellings mean the same, but no writer of ours has them
+  if (text->at(std::string(header_key)) != header_checksum(header) || !head.starts_with(spelled) ||
+      head.find_first_not_of(' ', spelled.size()) != head.npos)
     refuse("damaged: the header does not match its checksum");
 
   struct Range {

@@ -32,7 +32,7 @@ NamedMesh load_mesh(const std::string& spec) {
       result.mesh = builtin_surface(spec);
     return result;
   }
-  if (!std::filesystem::exists(spec))
+  if (std::error_code none; !std::filesystem::exists(spec, none))
     throw InputError(spec +
                      ": there is no such file, and no built-in mesh of this name (bar, cube, menger, ball, "
                      "octopus, hexbox, tet10; plate, cylinder, sphere)");

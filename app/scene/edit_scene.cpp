@@ -5,10 +5,16 @@
 #include <io/text/json_fields.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace supple {
 
 namespace {
+
+int read_label(const JsonFields& fields) {
+  using Limits = std::numeric_limits<int>;
+  return static_cast<int>(fields.integer("label", between(Limits::min(), Limits::max())));
+}
 
 HandleRegion read_handle(const JsonFields& fields, const std::filesystem::path& folder, const Points& nodes) {
   HandleRegion handle;
@@ -21,7 +27,7 @@ HandleRegion read_handle(const JsonFields& fields, const std::filesystem::path& 
     else if (fields.contains("box"))
       handle.nodes = nodes_in_box(nodes, fields.text("box"));
     else if (fields.contains("label"))
-      handle.nodes = nodes_with_label(nodes, folder / fields.text("file"), static_cast<int>(fields.integer("label")));
+      handle.nodes = nodes_with_label(nodes, folder / fields.text("file"), read_label(fields));
     else
       handle.nodes = read_node_set(nodes, folder / fields.text("file"));
   } catch (const InputError& error) {

@@ -24,7 +24,7 @@ Matrix frames_of_trajectory(const std::filesystem::path& path, const Points& nod
 }  // namespace
 
 Matrix read_poses(const std::filesystem::path& path, const Points& nodes) {
-  if (std::filesystem::is_directory(path)) return read_poses(path / trajectory_file, nodes);
+  if (std::error_code none; std::filesystem::is_directory(path, none)) return read_poses(path / trajectory_file, nodes);
   Matrix poses;
   if (is_matrix_file(path)) {
     poses = read_matrix(path);

@@ -59,7 +59,7 @@ void save_trajectory(const std::filesystem::path& path, const Trajectory& trajec
 }
 
 Trajectory load_trajectory(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) return load_trajectory(path / trajectory_file);
+  if (std::error_code none; std::filesystem::is_directory(path, none)) return load_trajectory(path / trajectory_file);
   const TensorFile file(path);
   const auto fail = [&](const std::string& why) { return InputError(path.string() + ": " + why); };
   if (!file.metadata().contains("format") || file.metadata("format") != format_name)
@@ -109,7 +109,7 @@ Trajectory load_trajectory(const std::filesystem::path& path) {
 }
 
 ReducedModel load_model_of(const Trajectory& trajectory, const std::filesystem::path& source) {
-  if (!std::filesystem::exists(trajectory.model))
+  if (std::error_code none; !std::filesystem::exists(trajectory.model, none))
     throw InputError(source.string() + ": its model " + trajectory.model.string() + " is gone");
   if (header_checksum(trajectory.model) != trajectory.model_checksum)
     throw InputError(source.string() + ": its model " + trajectory.model.string() +
@@ -128,7 +128,8 @@ std::string header_checksum(const std::filesystem::path& path) {
   file.read(reinterpret_cast<char*>(head), sizeof head);
   std::uint64_t length = 0;
   for (int k = 8; k-- > 0;) length = length << 8 | head[k];
-  if (file && length < 100'000'000) {
+  std::error_code unknown;
+  if (file && length < 100'000'000 && length < std::filesystem::file_size(path, unknown) && !unknown) {
     std::string text(length, ' ');
     file.read(text.data(), static_cast<std::streamsize>(length));
     const nlohmann::json header = nlohmann::json::parse(text, nullptr, false);

@@ -113,10 +113,14 @@ Image read_png(const std::filesystem::path& path) {
   const auto refuse = [&] { throw InputError(path.string() + ": not a readable PNG file: " + png.message); };
   if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) refuse();
   constexpr png_uint_32 largest = 1 << 15;
-  if (png.width > largest || png.height > largest) {
+  constexpr std::size_t most_pixels_a_byte = 1032 * 8;  // deflated, a bit each
+  const auto refuse_size = [&](const char* why) {
     png_image_free(&png);
-    throw InputError(path.string() + ": is larger than 32768 pixels");
-  }
+    throw InputError(path.string() + ": " + why);
+  };
+  if (png.width > largest || png.height > largest) refuse_size("is larger than 32768 pixels");
+  if (std::size_t{png.width} * png.height > most_pixels_a_byte * bytes.size())
+    refuse_size("announces more pixels than the file can hold");
   png.format = PNG_FORMAT_RGB;
   Image image(static_cast<int>(png.width), static_cast<int>(png.height));
   if (!png_image_finish_read(&png, nullptr, image.pixels.data(), 0, nullptr)) refuse();

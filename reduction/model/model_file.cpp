@@ -297,6 +297,9 @@ ReducedModel load_model(const std::filesystem::path& path) {
         for (const std::int64_t v : file.integers("fixed_nodes")) {
           if (v < 0 || v >= n)
             throw in.fail("fixed_nodes names node " + std::to_string(v) + ", expected 0 to " + std::to_string(n - 1));
+          if (!body.fixed_nodes.empty() && v <= body.fixed_nodes.back())
+            throw in.fail("fixed_nodes are not ascending: " + std::to_string(v) + " follows " +
+                          std::to_string(body.fixed_nodes.back()));
           body.fixed_nodes.push_back(v);
         }
         const Vector damping = in.finite_vector("damping", 2);

@@ -14,6 +14,7 @@ namespace supple::test {
 
 namespace {
 
+using namespace std::chrono_literals;
 using testing::HasSubstr;
 
 using CommandLineTest = SuppleProcess;
@@ -96,7 +97,7 @@ TEST_F(CommandLineTest, IsQuietInPipesAndShowsProgressOnATerminal) {
 TEST_F(CommandLineTest, EndsOnASignalWithoutPartialFiles) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const Outcome outcome = run_supple_until_signal(
-        {"reduce", "bar:60x20x20", "-o", "bar.supple", "--picture", "bar.png"}, folder, signal, 300);
+        {"reduce", "bar:60x20x20", "-o", "bar.supple", "--picture", "bar.png"}, folder, signal, 300ms);
     EXPECT_EQ(outcome.exit_code, 128 + signal);
     EXPECT_TRUE(files().empty()) << files().front();
   }
@@ -115,7 +116,7 @@ TEST_F(CommandLineTest, FinishesTheFileThatASignalFindsItWriting) {
 
 TEST_F(CommandLineTest, EndsOnASignalWhileNobodyReadsItsReport) {
   ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  const Outcome outcome = run_supple_until_signal({"info", "bar:4x2x2", "--json", "pipe"}, folder, SIGTERM, 500);
+  const Outcome outcome = run_supple_until_signal({"info", "bar:4x2x2", "--json", "pipe"}, folder, SIGTERM, 500ms);
   EXPECT_EQ(outcome.exit_code, 128 + SIGTERM);
 }
 

@@ -167,6 +167,8 @@ TEST_F(EditCommandTest, RefusesBadScenesInOneLineAndLeavesNothing) {
   write("short.sel", "1\n2\n");
   refuse(R"({"handles": [{"name": "a", "file": "short.sel", "label": 1}], "edits": [{"moves": []}]})",
          {"short.sel", "81"});
+  refuse(R"({"handles": [{"name": "a", "file": "short.sel", "label": 4294967297}], "edits": [{"moves": []}]})",
+         {"/handles/0/label", "4294967297"});
   write("bad.sel", "1\nx\n");
   refuse(R"({"handles": [{"name": "a", "file": "bad.sel", "label": 1}], "edits": [{"moves": []}]})", {"bad.sel:2"});
   write("scene.json", bend);

@@ -312,7 +312,7 @@ TEST_F(SelectCommandTest, LeavesNothingWhenASignalEndsIt) {
   write_npy("large.npy", uniform(800, 4000, 1));
   const Outcome outcome = run_supple_until_signal(
       {"select", "--matrix", "large.npy", "--points", "600", "--selector", "nn-omp", "--json", "report.json"}, folder,
-      SIGINT, 300);
+      SIGINT, std::chrono::milliseconds(300));
   EXPECT_EQ(outcome.exit_code, 128 + SIGINT);
   EXPECT_EQ(files(), (std::vector<std::string>{"A.npy", "b.npy", "large.npy"}));
 }

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <fstream>
 #include <functional>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -23,13 +24,18 @@ std::string drain(int descriptor) {
   return text;
 }
 
-/// \param wait  called with the process's number before the signal is sent.
-/// \param device  that stdout goes to; null: into the outcome.
-Outcome run(const Arguments& arguments, const std::filesystem::path& folder, bool terminal, int signal = 0,
-            const std::function<void(pid_t)>& wait = {}, const char* device = nullptr) {
+struct Circumstances {
+  bool terminal = false;                 ///< that stderr goes to
+  const char* device = nullptr;          ///< that stdout goes to; null: into the outcome
+  std::size_t largest_file = 0;          ///< [bytes]; 0: as large as it likes
+  int signal = 0;                        ///< sent to it; 0: none
+  std::function<void(pid_t)> wait = {};  ///< called with the process's number before the signal is sent
+};
+
+Outcome run(const Arguments& arguments, const std::filesystem::path& folder, const Circumstances& given = {}) {
   int out[2], err[2];
   if (pipe(out) != 0) throw std::runtime_error("no pipe");
-  if (terminal) {
+  if (given.terminal) {
     err[0] = posix_openpt(O_RDWR | O_NOCTTY);
     if (err[0] < 0 || grantpt(err[0]) != 0 || unlockpt(err[0]) != 0) throw std::runtime_error("no terminal");
     err[1] = open(ptsname(err[0]), O_RDWR | O_NOCTTY);
@@ -43,7 +49,12 @@ Outcome run(const Arguments& arguments, const std::filesystem::path& folder, boo
   argv.push_back(nullptr);
   const pid_t child = fork();
   if (child == 0) {
-    dup2(device ? open(device, O_WRONLY) : out[1], STDOUT_FILENO);
+    if (given.largest_file > 0) {
+      const rlimit limit{given.largest_file, given.largest_file};
+      setrlimit(RLIMIT_FSIZE, &limit);
+      std::signal(SIGXFSZ, SIG_IGN);  // what is too large fails then, as on a full disk
+    }
+    dup2(given.device ? open(given.device, O_WRONLY) : out[1], STDOUT_FILENO);
     dup2(err[1], STDERR_FILENO);
     for (const int descriptor : {out[0], out[1], err[0], err[1]}) close(descriptor);
     if (chdir(folder.c_str()) == 0) execv(argv[0], argv.data());
@@ -53,9 +64,9 @@ Outcome run(const Arguments& arguments, const std::filesystem::path& folder, boo
   close(err[1]);
   Outcome outcome;
   std::thread reader([&] { outcome.err = drain(err[0]); });
-  if (signal != 0) {
-    wait(child);
-    kill(child, signal);
+  if (given.signal != 0) {
+    given.wait(child);
+    kill(child, given.signal);
     kill(child, SIGCONT);
   }
   outcome.out = drain(out[0]);
@@ -66,41 +77,50 @@ Outcome run(const Arguments& arguments, const std::filesystem::path& folder, boo
   return outcome;
 }
 
+bool is_writing(const std::filesystem::path& folder) {
+  std::error_code gone;  // a file may be renamed meanwhile
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, gone))
+    if (entry.path().extension() == ".tmp") return true;
+  return false;
+}
+
+/// Waits until it has opened a file to write, and holds it there, however long this process waits for its turn.
+void hold_while_writing(pid_t child, const std::filesystem::path& folder) {
+  const auto start = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - start < std::chrono::seconds(60)) {
+    if (is_writing(folder)) {
+      siginfo_t info{};
+      kill(child, SIGSTOP);
+      waitid(P_PID, static_cast<id_t>(child), &info, WSTOPPED | WEXITED | WNOWAIT);
+      if (is_writing(folder) || info.si_code != CLD_STOPPED) return;
+      kill(child, SIGCONT);
+    }
+    std::this_thread::yield();
+  }
+}
+
 }  // namespace
 
 Outcome run_supple(const Arguments& arguments, const std::filesystem::path& folder) {
-  return run(arguments, folder, false);
+  return run(arguments, folder);
 }
 Outcome run_supple_on_terminal(const Arguments& arguments, const std::filesystem::path& folder) {
-  return run(arguments, folder, true);
+  return run(arguments, folder, {.terminal = true});
 }
 Outcome run_supple_on_full_disk(const Arguments& arguments, const std::filesystem::path& folder) {
-  return run(arguments, folder, false, 0, {}, "/dev/full");
+  return run(arguments, folder, {.device = "/dev/full"});
+}
+Outcome run_supple_with_largest_file(const Arguments& arguments, const std::filesystem::path& folder,
+                                     std::size_t bytes) {
+  return run(arguments, folder, {.largest_file = bytes});
 }
 Outcome run_supple_until_signal(const Arguments& arguments, const std::filesystem::path& folder, int signal,
-                                int milliseconds) {
-  return run(arguments, folder, false, signal,
-             [&](pid_t) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); });
+                                std::chrono::microseconds after) {
+  return run(arguments, folder, {.signal = signal, .wait = [&](pid_t) { std::this_thread::sleep_for(after); }});
 }
 Outcome run_supple_until_signal_while_writing(const Arguments& arguments, const std::filesystem::path& folder,
                                               int signal) {
-  const auto is_writing = [&] {
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-      if (entry.path().extension() == ".tmp") return true;
-    return false;
-  };
-  const auto start = std::chrono::steady_clock::now();
-  return run(arguments, folder, false, signal, [&](pid_t child) {
-    while (std::chrono::steady_clock::now() - start < std::chrono::seconds(60)) {
-      if (is_writing()) {  // held there, however long this process waits for its turn
-        kill(child, SIGSTOP);
-        waitpid(child, nullptr, WUNTRACED);
-        if (is_writing()) return;
-        kill(child, SIGCONT);
-      }
-      std::this_thread::yield();
-    }
-  });
+  return run(arguments, folder, {.signal = signal, .wait = [&](pid_t child) { hold_while_writing(child, folder); }});
 }
 
 SuppleProcess::SuppleProcess() {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -25,9 +27,12 @@ Outcome run_supple(const Arguments& arguments, const std::filesystem::path& fold
 Outcome run_supple_on_terminal(const Arguments& arguments, const std::filesystem::path& folder);
 /// The same with a stdout that takes nothing.
 Outcome run_supple_on_full_disk(const Arguments& arguments, const std::filesystem::path& folder);
-/// The same, sent `signal` after so many milliseconds.
+/// The same where no file may grow beyond so many bytes.
+Outcome run_supple_with_largest_file(const Arguments& arguments, const std::filesystem::path& folder,
+                                     std::size_t bytes);
+/// The same, sent `signal` after a while.
 Outcome run_supple_until_signal(const Arguments& arguments, const std::filesystem::path& folder, int signal,
-                                int milliseconds);
+                                std::chrono::microseconds after);
 /// The same, sent `signal` as soon as it has opened a file to write.
 Outcome run_supple_until_signal_while_writing(const Arguments& arguments, const std::filesystem::path& folder,
                                               int signal);

@@ -11,6 +11,10 @@ if(TARGET supple)
     target_compile_definitions(test_app PRIVATE SUPPLE_PLUGINS="${PROJECT_BINARY_DIR}/plugins")
     add_dependencies(test_app gent_plugin no_plugin spring_tets_plugin)
   endif()
+  supple_test(kept_files LABEL unit LINKS supple::core nlohmann_json::nlohmann_json
+    SOURCES app/kept_files_test.cpp app/supple_process.cpp)
+  target_compile_definitions(test_kept_files PRIVATE SUPPLE_COMMAND="$<TARGET_FILE:supple>")
+  add_dependencies(test_kept_files supple)
   supple_test(real_shapes LABEL slow LINKS supple::core nlohmann_json::nlohmann_json
     SOURCES app/real_shapes_test.cpp app/supple_process.cpp)
   target_compile_definitions(test_real_shapes PRIVATE SUPPLE_COMMAND="$<TARGET_FILE:supple>"

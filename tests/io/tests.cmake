@@ -12,7 +12,4 @@ supple_test(io_surfaces OPTIMIZED LABEL unit LINKS supple::io ZLIB::ZLIB
 foreach(test test_io_meshes test_io_surfaces)
   target_compile_definitions(${test} PRIVATE SUPPLE_SHARED_MESHES="${PROJECT_SOURCE_DIR}/../shared/meshes")
 endforeach()
-supple_test(io_mesh_fuzz LABEL unit LINKS supple::io ZLIB::ZLIB
-  SOURCES io/damage.cpp io/mesh_files.cpp io/surface_files.cpp io/mesh/mesh_fuzz_test.cpp
-          io/surface/surface_fuzz_test.cpp)
 supple_test(io_matrices LABEL unit LINKS supple::io SOURCES io/table/matrix_file_test.cpp)

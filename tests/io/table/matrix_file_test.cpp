@@ -1,5 +1,4 @@
 #include <core/check.hpp>
-#include <core/random.hpp>
 #include <io/table/matrix_file.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
@@ -345,52 +344,6 @@ TEST_F(MatrixFile, CutOffAnywhereIsRefusedOrFinite) {
       const bool refused = is_refused(*this, bytes.substr(0, size));
       EXPECT_TRUE(refused || bytes.front() == '%') << size;  // a cut number of a text is a number still
     }
-}
-
-TEST_F(MatrixFile, DamagedAnywhereIsRefusedOrFinite) {
-  static const std::vector<std::string> tokens{"-1",
-                                               "0",
-                                               "99999999999",
-                                               "9223372036854775807",
-                                               "nan",
-                                               "1e999",
-                                               "\n",
-                                               " ",
-                                               "%",
-                                               "(",
-                                               ",",
-                                               "'",
-                                               "L",
-                                               std::string("\0", 1),
-                                               std::string("\xff\xff\xff\xff", 4)};
-  Random random(11);
-  for (const std::string& sample : samples()) {
-    int num_refused = 0;
-    constexpr int num_files = 600;
-    for (int k = 0; k < num_files; ++k) {
-      std::string bytes = sample;
-      for (Index change = 1 + random.below(3); change > 0; --change) {
-        const std::size_t at = static_cast<std::size_t>(random.below(static_cast<Index>(bytes.size())));
-        switch (random.below(4)) {
-          case 0:
-            bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.below(8)));
-            break;
-          case 1:
-            bytes[at] = static_cast<char>(random.below(256));
-            break;
-          case 2:
-            bytes.insert(at, tokens[static_cast<std::size_t>(random.below(static_cast<Index>(tokens.size())))]);
-            break;
-          case 3:
-            bytes.erase(at, static_cast<std::size_t>(1 + random.below(9)));
-            break;
-        }
-        if (bytes.empty()) bytes = "x";
-      }
-      num_refused += is_refused(*this, bytes);
-    }
-    EXPECT_GT(num_refused, num_files / 4);  // the damage does damage
-  }
 }
 
 }  // namespace

@@ -397,6 +397,8 @@ TEST_F(ModelFile, IsRefusedIfAnythingIsWrongWithIt) {
               testing::HasSubstr("names node -2"));
   EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).fixed_nodes = {63}; }),
               testing::HasSubstr("names node 63"));
+  EXPECT_THAT(changed([](auto& m) { std::ranges::reverse(std::get<Solid>(m.body).fixed_nodes); }),
+              testing::HasSubstr("fixed_nodes are not ascending"));
   EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).law = "jelly"; }), testing::HasSubstr("jelly"));
   EXPECT_THAT(changed([](auto& m) { std::get<Solid>(m.body).density = Vector::Ones(5); }),
               testing::HasSubstr("bar.supple"));
