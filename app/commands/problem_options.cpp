@@ -126,8 +126,15 @@ void set_materials(const ProblemOptions& problem, SolidOf<Mesh>& solid) {
     solid.density.resize(mesh.num_cells());
     for (Index e = 0; e < mesh.num_cells(); ++e) solid.density[e] = materials[solid.material_of_cell[e]].density;
   }
+  const auto values = [&](const Material& material) {
+    try {
+      return law.values(material.moduli, material.parameters);
+    } catch (const std::invalid_argument& error) {
+      throw InputError((problem.materials ? problem.materials->string() + ": " : "") + error.what());
+    }
+  };
   for (std::size_t k = 0; k < materials.size(); ++k) {
-    const std::vector<double> row = law.values(materials[k].moduli, materials[k].parameters);
+    const std::vector<double> row = values(materials[k]);
     solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
     for (std::size_t j = 0; j < row.size(); ++j) solid.parameters(k, j) = row[j];
   }

@@ -268,6 +268,11 @@ void draw_plot(const std::filesystem::path& path, const Plot& plot) {
   if (gnuplot.status != 0 || gnuplot.output.empty())
     throw InputError(path.string() + ": cannot be drawn: gnuplot failed: " + gnuplot.messages.substr(0, 2000));
   std::string picture = gnuplot.output;
+  using namespace std::string_view_literals;
+  if (const std::string_view end = extension == ".svg" ? "</svg>\n\n"sv : "IEND\xae\x42\x60\x82"sv;
+      !picture.ends_with(end))
+    throw InputError(path.string() + ": cannot be drawn: gnuplot's picture is cut short: " + std::strerror(EFBIG) +
+                     ", or " + std::strerror(ENOSPC));
   constexpr std::string_view title = "<title>Gnuplot</title>\n";  // which browsers would show
   if (const auto at = picture.find(title); extension == ".svg" && at != std::string::npos)
     picture.erase(at, title.size());

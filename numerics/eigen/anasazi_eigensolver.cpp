@@ -47,7 +47,8 @@ struct StandardProblem {
   SparseMatrix A;
   Matrix deflated;  // orthonormal
   double norm = 0;  // ‖A‖_∞, at least the largest eigenvalue
-  // Of the column sums of |A|, the median and the smallest: slivers of almost no mass, and stiff parts, have the largest.
+  // Of the column sums of |A|, the median and the smallest that is not 0: slivers of almost no mass, and stiff parts, have
+  // the largest.
   double bulk = 0, softest = 0;
 
   /// Whether a dense solver, whose errors are relative to the largest eigenvalue, would lose digits of the small ones.
@@ -60,10 +61,11 @@ struct Rounding {
   Vector energies;  // |y|ᵀ |A| |y|
   Vector forces;    // ‖ |A| |y| ‖
 
-  Rounding(const SparseMatrix& A, MatrixIn Y) {
-    const Matrix sizes = Y.cwiseAbs(), sums = product(A, sizes, [](double a) { return std::abs(a); });
-    energies = sizes.cwiseProduct(sums).colwise().sum().transpose();
-    forces = sums.colwise().norm().transpose();
+  Rounding(const StandardProblem& problem, MatrixIn Y) {
+    const double least = problem.is_graded() ? problem.softest : problem.norm;
+    const Matrix sizes = Y.cwiseAbs(), sums = product(problem.A, sizes, [](double a) { return std::abs(a); });
+    energies = sizes.cwiseProduct(sums).colwise().sum().transpose().cwiseMax(least);
+    forces = sums.colwise().norm().transpose().cwiseMax(least);
   }
 };
 
@@ -98,7 +100,9 @@ StandardProblem standard_problem(const SparseMatrix& K, const Vector& M_diagonal
   }
   std::nth_element(column_sums.begin(), column_sums.begin() + n / 2, column_sums.end());
   problem.bulk = std::max(column_sums[n / 2], 1e-20 * problem.norm);
-  problem.softest = std::max(column_sums.minCoeff(), 1e-20 * problem.norm);
+  problem.softest = problem.norm;
+  for (const double sum : column_sums)  // nothing holds unknowns whose sum is rounding
+    if (sum > 1e-20 * problem.norm) problem.softest = std::min(problem.softest, sum);
   Random random(0);
   Matrix probes(n, 2);
   for (double& value : probes.reshaped()) value = random.normal();
@@ -210,7 +214,7 @@ class ShiftedInverse {
       }
       project_out(problem_.deflated, X);
       const Pairs rough = rayleigh_ritz(problem_.A, std::move(X));
-      const Vector zero = zero_energy * Rounding(problem_.A, rough.vectors).energies;
+      const Vector zero = zero_energy * Rounding(problem_, rough.vectors).energies;
       for (Index j = 0; j < zero.size(); ++j)
         if (rough.values[j] > zero[j] && rough.values[j] > 1e-6 * rough.values.tail(1)[0]) return rough.values[j];
     }
@@ -429,7 +433,7 @@ EigenPairs smallest_eigenpairs(const SparseMatrix& K, const Vector& M_diagonal, 
   const Matrix force = product(problem.A, pairs.vectors) - pairs.vectors * pairs.values.asDiagonal();
   result.omega_squared = std::move(pairs.values);
   const Index r = result.omega_squared.size();
-  const Rounding rounding(problem.A, pairs.vectors);
+  const Rounding rounding(problem, pairs.vectors);
   result.residuals.resize(r);
   bool converged = complete && r == options.num_modes;
   for (Index j = 0; j < r; ++j) {

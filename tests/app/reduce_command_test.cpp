@@ -6,6 +6,7 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <csignal>
 
 namespace supple::test {
@@ -13,6 +14,7 @@ namespace supple::test {
 namespace {
 
 using nlohmann::json;
+using namespace std::chrono_literals;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -618,9 +620,9 @@ TEST_F(ReduceCommandTest, GoesOnAfterItWasKilled) {
   const std::string whole = read("bar.supple");
   Arguments kept = job;
   kept.insert(kept.end(), {"--checkpoint", "kept"});
-  for (const int milliseconds : {100, 300, 600, 900})
-    (void)run_supple_until_signal(kept, folder, SIGKILL, milliseconds);
-  const Outcome stopped = run_supple_until_signal(kept, folder, SIGINT, 50);
+  for (const std::chrono::milliseconds after : {100ms, 300ms, 600ms, 900ms})
+    (void)run_supple_until_signal(kept, folder, SIGKILL, after);
+  const Outcome stopped = run_supple_until_signal(kept, folder, SIGINT, 50ms);
   if (stopped.exit_code == 128 + SIGINT) {
     EXPECT_THAT(stopped.err, HasSubstr("interrupted; the same command goes on from the stages that kept keeps"));
   }

@@ -46,7 +46,7 @@ struct Target {
   std::function<std::vector<std::string>()> seeds;  ///< files as they should be, to be damaged
   /// Brings the bytes into files of the folder, which is empty but for those of earlier calls, and reads them.
   std::function<Answer(const std::string& bytes, const std::filesystem::path& folder)> read;
-  std::size_t memory_per_byte = 100, memory = 100000;  ///< that the reader may ask for at once [bytes]
+  std::size_t memory_per_byte = 100, memory = 200000;  ///< that the reader may ask for at once [bytes]
   bool seeds_are_sound = true;                         ///< else some may be refused
 };
 

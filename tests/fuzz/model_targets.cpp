@@ -254,8 +254,8 @@ std::function<std::vector<std::string>()> just(std::vector<std::string> seeds) {
 
 std::vector<Target> model_targets() {
   return {{"tensor_files", tensor_file_seeds, read_tensor_files, 1000},
-          {"models", just(scripts(4)), read_models, 1000, 1 << 20, false} {"trajectories", just(scripts(2)),
-                                                                           read_trajectories, 1000, 1 << 20, false},
+          {"models", just(scripts(4)), read_models, 1000, 1 << 20, false},
+          {"trajectories", just(scripts(2)), read_trajectories, 1000, 1 << 20, false},
           {"poses", just(scripts(3)), read_pose_files, 1000, 1 << 20, false},
           {"scenes", just({scene_seed, newmark_seed}), read_scenes},
           {"edits", just({edit_seed}), read_edits},

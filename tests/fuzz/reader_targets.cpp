@@ -69,9 +69,9 @@ void demand_sound(const Mesh& mesh, const MeshNotes& notes, std::size_t num_cell
 
 Target solids(const std::string& format, const std::string& extension, std::size_t memory_per_byte = 100) {
   const auto read = [=](const std::string& bytes, const fs::path& folder) {
-    const fs::path path = put(folder / ("mesh" + extension), bytes.substr(0, bytes.find(next_file)));
-    const std::size_t second = std::min(bytes.find(next_file), bytes.size() - 1) + 1;
-    if (extension == ".node") put(folder / "mesh.ele", bytes.substr(std::min(second, bytes.size())));
+    const std::size_t first = extension == ".node" ? std::min(bytes.find(next_file), bytes.size()) : bytes.size();
+    const fs::path path = put(folder / ("mesh" + extension), bytes.substr(0, first));
+    if (extension == ".node") put(folder / "mesh.ele", bytes.substr(std::min(first + 1, bytes.size())));
     return answer_of(extension == ".node" ? folder / "mesh" : path, [&] {
       MeshNotes notes;
       const SolidMesh any = read_solid_mesh(path, &notes);
@@ -160,10 +160,9 @@ constexpr const char* json_seed =
 /// All kinds of fields, each asked for by itself, since the first that is wrong ends the reading.
 Answer read_json(const std::string& bytes, const fs::path& folder) {
   const fs::path path = folder / "fields.json";  // named only: reading it takes longer than parsing it
-  Answer all = Answer::Sound;
+  Answer some = Answer::Refused;
   const auto ask = [&](const auto& field) {
-    if (answer_of(path, [&] { field(JsonFields::parse(bytes, path.string())); }) == Answer::Refused)
-      all = Answer::Refused;
+    if (answer_of(path, [&] { field(JsonFields::parse(bytes, path.string())); }) == Answer::Sound) some = Answer::Sound;
   };
   const auto demand_finite = [](double value) { demand(std::isfinite(value), "a number that is not finite"); };
   ask([](const JsonFields& fields) { (void)fields.text("text"), (void)fields.flag_or("flag", false); });
@@ -187,7 +186,7 @@ Answer read_json(const std::string& bytes, const fs::path& folder) {
     if (const auto object = fields.object_if("object")) (void)object->object("object").number("number");
     fields.finish();
   });
-  return all;
+  return some;
 }
 
 std::vector<std::string> picture_seeds() {

@@ -197,6 +197,7 @@ void Tensors::edit(std::string_view bytes) {
     Array& array = arrays[script.below(arrays.size())];
     const std::size_t count = num_values(array);
     auto text = metadata.begin();
+    if (kind >= 9 && metadata.empty()) continue;
     if (kind >= 9) std::advance(text, script.below(metadata.size()));
     switch (kind) {
       case 0:

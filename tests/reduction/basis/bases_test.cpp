@@ -143,7 +143,7 @@ void expect_spans(const DenseBasis& basis, const StvkBar& system, const Matrix& 
 
 TEST(PcaBasis, BearsSnapshotsThatHardlyDiffer) {
   const StvkBar system = clamped_bar();
-  const Matrix one = random_snapshots(system, 1, 1), others = random_snapshots(system, 9, 9);
+  const Matrix all = random_snapshots(system, 10, 10), one = all.leftCols(1), others = all.rightCols(9);
   for (const double difference : {1e-2, 1e-6, 1e-10, 1e-14, 0.0}) {
     SCOPED_TRACE(difference);
     Matrix snapshots = one.replicate(1, 10);
@@ -190,10 +190,10 @@ TEST(PcaBasis, SaysWhichSnapshotsAreTooSmallBesideOthers) {
 TEST(PcaBasis, MindsNoUnits) {
   const StvkBar system = clamped_bar();
   const Matrix snapshots = random_snapshots(system, 6, 9);
-  const DenseBasis plain = PcaBasis{.snapshots = snapshots, .energy = 0.99}(system);
+  const DenseBasis plain = PcaBasis{.snapshots = snapshots, .energy = 0.8}(system);
   EXPECT_LT(plain.dim(), 6);
   for (const double unit : {1e-200, 1e-30, 1e30, 1e200}) {
-    const DenseBasis basis = PcaBasis{.snapshots = unit * snapshots, .energy = 0.99}(system);
+    const DenseBasis basis = PcaBasis{.snapshots = unit * snapshots, .energy = 0.8}(system);
     ASSERT_EQ(basis.dim(), plain.dim()) << unit;
     EXPECT_TRUE(is_near(basis.report.singular_values / unit, plain.report.singular_values, 1e-12));
     const Matrix overlap = basis.dense().transpose() * system.rest_state().mass_of_rows().asDiagonal() * plain.dense();
@@ -315,13 +315,13 @@ TEST(JoinedBasis, OfPartsThatNearlyCoincideIsOrthonormal) {
   const StvkBar system = clamped_bar();
   const Vector mass = system.rest_state().mass_of_rows();
   const DenseBasis first = PcaBasis{.snapshots = random_snapshots(system, 6, 6)}(system);
-  const Matrix away = random_snapshots(system, 6, 6);
-  for (const double difference : {1e-1, 1e-4, 1e-5, 1e-8, 1e-12, 0.0}) {
+  const Matrix away = random_snapshots(system, 12, 6);
+  for (const double difference : {1e-1, 1e-4, 1e-8, 1e-12, 0.0}) {
     const Matrix moved = first.dense() + difference * away / away.norm() * first.dense().norm();
     const DenseBasis second = PcaBasis{.snapshots = moved}(system);
     const auto joined = join(first, second, system.rest_state().nodal_mass);
     const Matrix U = joined.dense();
-    EXPECT_EQ(joined.dim(), difference >= 1e-5 ? 12 : 6) << difference;
+    EXPECT_EQ(joined.dim(), difference >= 1e-4 ? 12 : 6) << difference;
     EXPECT_EQ(joined.report.dropped, 12 - joined.dim());
     EXPECT_TRUE(is_near(U.transpose() * mass.asDiagonal() * U, Matrix::Identity(U.cols(), U.cols()), 1e-10));
     EXPECT_LT(outside(joined, system, first.dense()), 1e-10);

@@ -78,14 +78,6 @@ TetMesh with_flat_tip(TetMesh mesh, double flat) {
   return mesh;
 }
 
-/// A node moved towards the face across tet e, but for `flat`.
-TetMesh with_flattened_tet(TetMesh mesh, Index e, double flat) {
-  const auto [a, b, c, d] = mesh.cells[e];
-  const Point base = centre_of(mesh, {b, c, d}), apex = mesh.nodes.row(a);
-  mesh.nodes.row(a) = base + flat * (apex - base);
-  return mesh;
-}
-
 constexpr Index cut = 70;
 
 // What a sliver adds to an object is nothing, and so is what it does to its motions: 1e-4 is about what a node in place of
@@ -154,14 +146,15 @@ TEST(Slivers, LetTheFullObjectMove) {
 
 TEST(Slivers, WithoutVolumeOrInvertedAreRefusedByName) {
   const TetMesh bar = bar_mesh();
-  for (const double flat : {0.0, 1e-18, -1e-18, -1e-6, -0.1}) {
-    const Solid solid = solid_of(with_flattened_tet(bar, cut, flat));
+  std::vector<TetMesh> meshes{with_flat_part(bar, cut, -1e-6), with_flat_part(bar, cut, -0.1), bar};
+  const Index copy = append_node(meshes.back(), bar.nodes.row(bar.cells[cut][1]).transpose());
+  meshes.back().cells[cut][0] = copy;  // two of its nodes are in one place
+  for (const TetMesh& mesh : meshes) {
+    const Solid solid = solid_of(mesh);
     EXPECT_THAT([&] { (void)reduce(solid, quick()); },
-                testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("tet " + std::to_string(cut))))
-        << flat;
+                testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("tet " + std::to_string(cut))));
     EXPECT_THAT([&] { (void)full_system(solid); },
-                testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("tet " + std::to_string(cut))))
-        << flat;
+                testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("tet " + std::to_string(cut))));
   }
 }
 
