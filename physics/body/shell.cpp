@@ -1,10 +1,11 @@
+#include <physics/body/mass_everywhere.hpp>
 #include <physics/body/shell.hpp>
 #include <physics/mesh/mass.hpp>
 
 namespace supple {
 
 Vector Shell::nodal_mass() const {
-  return lumped_mass(mesh, density, thickness);
+  return mass_everywhere(lumped_mass(mesh, density, thickness));
 }
 
 Shell isotropic_shell(TriangleMesh mesh, const IsotropicModuli& moduli, double thickness,

@@ -1,3 +1,4 @@
+#include <physics/body/mass_everywhere.hpp>
 #include <physics/body/material_law.hpp>
 #include <physics/body/solid.hpp>
 #include <physics/mesh/mass.hpp>
@@ -7,9 +8,9 @@ namespace supple {
 template <typename Mesh>
 Vector SolidOf<Mesh>::nodal_mass() const {
   if constexpr (std::same_as<Mesh, TetMesh>)
-    return lumped_mass(mesh, density);
+    return mass_everywhere(lumped_mass(mesh, density));
   else
-    return lumped_mass<Element>(mesh, density);
+    return mass_everywhere(lumped_mass<Element>(mesh, density));
 }
 template struct SolidOf<TetMesh>;
 template struct SolidOf<HexMesh>;

@@ -3,18 +3,6 @@
 
 namespace supple {
 
-namespace {
-
-/// \throws std::invalid_argument naming the first node without mass.
-void require_mass(const Vector& mass, const std::string& cell) {
-  for (Index v = 0; v < mass.size(); ++v)
-    if (!(mass[v] > 0))
-      throw std::invalid_argument("node " + std::to_string(v) + " has no mass: it belongs to no " + cell +
-                                  ", or what it belongs to has no size");
-}
-
-}  // namespace
-
 Vector lumped_mass(const TetMesh& mesh, VectorIn density) {
   if (density.size() != 1) require_size("density", density.size(), mesh.num_cells());
   Vector mass = Vector::Zero(mesh.num_nodes());
@@ -23,7 +11,6 @@ Vector lumped_mass(const TetMesh& mesh, VectorIn density) {
     require(rho > 0, "density of tet " + std::to_string(e) + " is " + std::to_string(rho) + " kg/m^3, expected > 0");
     for (const Index v : mesh.cells[e]) mass[v] += rho * tet_volume(mesh, e) / 4;
   }
-  require_mass(mass, "tet");
   return mass;
 }
 
@@ -48,7 +35,6 @@ Vector lumped_mass(const TriangleMesh& mesh, VectorIn density, VectorIn thicknes
     require(h > 0, "thickness of triangle " + std::to_string(t) + " is " + std::to_string(h) + " m, expected > 0");
     for (const Index v : mesh.triangles[t]) mass[v] += rho * h * triangle_area(mesh, t) / 3;
   }
-  require_mass(mass, "triangle");
   return mass;
 }
 
