@@ -111,7 +111,14 @@ Trajectory load_trajectory(const std::filesystem::path& path) {
 ReducedModel load_model_of(const Trajectory& trajectory, const std::filesystem::path& source) {
   if (std::error_code none; !std::filesystem::exists(trajectory.model, none))
     throw InputError(source.string() + ": its model " + trajectory.model.string() + " is gone");
-  if (header_checksum(trajectory.model) != trajectory.model_checksum)
+  const auto checksum = [&] {
+    try {
+      return header_checksum(trajectory.model);
+    } catch (const InputError& error) {
+      throw InputError(source.string() + ": its model " + error.what());
+    }
+  };
+  if (checksum() != trajectory.model_checksum)
     throw InputError(source.string() + ": its model " + trajectory.model.string() +
                      " has changed since; run supple simulate again");
   ReducedModel model = load_model(trajectory.model);
