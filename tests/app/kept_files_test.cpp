@@ -37,6 +37,12 @@ class KeptFiles : public SuppleProcess {
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   }
 
+  double seconds_of(const Arguments& arguments) const {
+    const Stopwatch watch;
+    run(arguments);
+    return watch.seconds();
+  }
+
   /// Kills the command at a random moment: of its whole run, or while it writes.
   void kill(const Arguments& arguments, double seconds, Random& random) const {
     if (random.below(2) == 0)
@@ -75,9 +81,7 @@ TEST_F(KeptFiles, AKilledReductionLeavesTheOldModelOrTheNewOne) {
   const Arguments command = reduced_bar("2e5", "out/bar.supple");
   run(reduced_bar("1e5", "out/bar.supple"));
   const auto old_files = contents("out");
-  const Stopwatch watch;
-  run(command);
-  const double seconds = watch.seconds();
+  const double seconds = seconds_of(command);
   const auto new_files = contents("out");
   ASSERT_NE(old_files, new_files);
 
@@ -112,9 +116,7 @@ TEST_F(KeptFiles, AKilledSimulationLeavesCompleteFiles) {
   const Arguments command = simulated_bar("0.2", "run");
   run(simulated_bar("0.1", "run"));
   const auto old_files = contents("run");
-  const Stopwatch watch;
-  run(command);
-  const double seconds = watch.seconds();
+  const double seconds = seconds_of(command);
   const auto new_files = contents("run");
   ASSERT_GT(new_files.size(), old_files.size());
 

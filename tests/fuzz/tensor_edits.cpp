@@ -1,8 +1,7 @@
+#include <core/digest.hpp>
 #include <tests/fuzz/tensor_edits.hpp>
 
 #include <nlohmann/json.hpp>
-#define XXH_INLINE_ALL  // nothing to link
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -18,10 +17,7 @@ namespace {
 using Json = nlohmann::json;
 
 std::string checksum(std::string_view bytes) {
-  std::array<char, 17> hex;
-  std::snprintf(hex.data(), hex.size(), "%016llx",
-                static_cast<unsigned long long>(XXH3_64bits(bytes.data(), bytes.size())));
-  return hex.data();
+  return Digest().add(std::as_bytes(std::span(bytes))).text();
 }
 
 /// Numbers of a script in turn; zeros behind its end.
