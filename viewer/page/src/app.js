@@ -92,10 +92,12 @@ export class App {
     const stem = movable ? 'handle' : 'anchor';
     let number = 1;
     while (known.has(`${stem} ${number}`)) number++;
-    this.wantsHandle = `${stem} ${number}`;
-    this.session.ask({do: 'handle', nodes: [...this.selection].sort((a, b) => a - b), name: this.wantsHandle, movable});
+    const name = `${stem} ${number}`, nodes = [...this.selection].sort((a, b) => a - b);
+    this.session.ask({do: 'handle', nodes, name, movable});
     this.select([], 'replace');
-    if (movable) this.setOptions({tool: 'move'});
+    if (!movable) return;
+    this.wantsHandle = name;
+    this.setOptions({tool: 'move'});
   }
 
   handleAt(node) {

@@ -3,6 +3,7 @@ export function exposeHook(app) {
   const {session} = app;
   window.supple = {
     get ready() { return app.ready; },
+    get settled() { return app.stage.settled; },
     get connected() { return session.connected; },
     get client() { return session.client; },
     get state() { return app.state; },

@@ -40,7 +40,7 @@ export class Layout {
       oninput: () => app.session.ask({do: 'seek', time: this.seek.valueAsNumber})});
     this.transport = element('div', {class: 'transport card'},
       button('Reset', ask('reset'), {icon: ICONS.reset, title: 'Back to rest (r)', kind: 'round'}), this.play,
-      button('Step', ask('step'), {icon: ICONS.step, title: 'One step (.)', kind: 'round'}),
+      button('Step', ask('step'), {icon: ICONS.step, title: 'One step (.)', kind: 'round step'}),
       live ? this.record : this.seek, this.clock, this.badge);
     this.progress = element('div', {class: 'progress card'}, element('h2', {}, 'Waiting for the server'),
       element('progress', {max: 1}), element('p', {}, ''));
@@ -64,8 +64,9 @@ export class Layout {
     document.title = `${about.name} – Supple`;
     this.name.textContent = about.name;
     const of = about.solid ? 'solid' : 'shell';
-    this.facts.textContent = [`${of}, ${count(about.surface_nodes)} vertices`, `${about.dimension} unknowns`,
-      `${about.components} components`, ...(about.full_error > 0 ? [`${(100 * about.full_error).toPrecision(2)} % off the full object`] : [])].join(' · ');
+    const error = about.full_error > 0 ? ` · ${(100 * about.full_error).toPrecision(2)} % off the full object` : '';
+    this.facts.replaceChildren(`${of} of ${count(about.surface_nodes)} vertices`, element('br'),
+      `${about.dimension} unknowns · ${about.components} components${error}`);
     this.plots.setModel(model);
     this.panel.setModel(model);
     if (!session.live) this.seek.max = session.duration;

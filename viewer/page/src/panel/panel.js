@@ -99,8 +99,8 @@ export class Panel {
     this.gravity = vector('Gravity', 'm/s²', (gravity) => this.#set({gravity}));
     const along = (g) => [0, 1, 2].map((axis) => (axis === this.axis ? g : 0));
     this.stiffness = slider('Stiffness', {low: 1e-3, high: 1e3, log: true, unit: '×'}, (stiffness) => this.#set({stiffness}));
-    this.massDamping = slider('Damping, mass', {low: 0, high: 10, unit: '1/s'}, (mass) => this.#damp({mass}));
-    this.stiffnessDamping = slider('Damping, stiffness', {low: 0, high: 0.02, unit: 's'}, (stiffness) => this.#damp({stiffness}));
+    this.massDamping = slider('Drag', {low: 0, high: 10, unit: '1/s', title: 'Damping proportional to mass'}, (mass) => this.#damp({mass}));
+    this.stiffnessDamping = slider('Viscosity', {low: 0, high: 0.02, unit: 's', title: 'Damping proportional to stiffness'}, (stiffness) => this.#damp({stiffness}));
     this.floor = toggle('Floor', (on) => this.#set({floor: on ? this.#floorAt(app.model.about.low[this.axis] - 0.02 * app.model.about.diagonal) : null}));
     this.floorHeight = slider('Height of the floor', {low: 0, high: 1, unit: 'm'}, (height) => this.#set({floor: this.#floorAt(height)}));
     this.floorHeight.querySelector('input[type=range]').hidden = true;
@@ -189,8 +189,10 @@ export class Panel {
 
   #export() {
     const save = (kind, label, title) => button(label, () => this.app.save(kind), {title});
-    return section('Export', buttons(save('obj', 'OBJ', 'The shape as it is now'), save('ply', 'PLY', 'The shape as it is now'),
+    const row = buttons(save('obj', 'OBJ', 'The shape as it is now'), save('ply', 'PLY', 'The shape as it is now'),
       save('png', 'PNG', 'The picture as it is now (s)'), save('glb', 'glTF', 'The recording, or the last seconds, as an animation'),
-      save('html', 'Page', 'The recording, or the last seconds, as one HTML file that needs no server')));
+      save('html', 'Page', 'The recording, or the last seconds, as one HTML file that needs no server'));
+    row.classList.add('exports');
+    return section('Export', row);
   }
 }

@@ -1,11 +1,11 @@
 import {
-  BufferAttribute, BufferGeometry, Color, DoubleSide, GLSL3, LineSegments, Mesh, RawShaderMaterial, Scene,
+  BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, GLSL3, LineSegments, Mesh, RawShaderMaterial, Scene,
 } from 'three';
 import {edgesOf} from '../geometry/rings.js';
 import {colourTexture} from './colour_maps.js';
 import {PRECISION} from './pixel_pass.js';
 import {TEXEL_OF_NODE} from './node_grid.js';
-import {SHADING, SHADOW} from './shading.js';
+import {SHADING, shadowBy} from './shading.js';
 
 /** What the surface's colour says. */
 export const COLOURS = {
@@ -27,6 +27,7 @@ export class Body {
     this.geometry = new BufferGeometry();
     this.geometry.setIndex(new BufferAttribute(model.triangles, 1));
     this.geometry.setAttribute('tint', this.tint);
+    const side = model.about.solid ? FrontSide : DoubleSide;
     const places = {
       columns: {value: deformer.grid.columns},
       positions: {value: null}, normals: {value: null}, rest: {value: deformer.rest},
@@ -37,7 +38,7 @@ export class Body {
       albedo: {value: new Color()}, ghost: {value: 0}, sheet: {value: model.about.solid ? 0 : 1},
     };
     this.material = new RawShaderMaterial({
-      glslVersion: GLSL3, side: DoubleSide, uniforms: this.uniforms, defines: {SHADOW_TAPS: 8},
+      glslVersion: GLSL3, side, uniforms: this.uniforms,
       vertexShader: PRECISION + VERTEX, fragmentShader: PRECISION + FRAGMENT,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
@@ -50,12 +51,22 @@ export class Body {
       vertexShader: PRECISION + PLAIN_VERTEX, fragmentShader: PRECISION + LINE_FRAGMENT,
     });
     this.casterMaterial = new RawShaderMaterial({
-      glslVersion: GLSL3, side: DoubleSide, uniforms: places, colorWrite: false,
+      glslVersion: GLSL3, side, uniforms: places, colorWrite: false,
       vertexShader: PRECISION + PLAIN_VERTEX, fragmentShader: PRECISION + 'void main() {}',
     });
     const caster = new Mesh(this.geometry, this.casterMaterial);
     caster.frustumCulled = false;
     this.casters = new Scene().add(caster);
+
+    // Of a ghost only the nearest layer is seen: the depths of this veil hide those behind.
+    this.veilMaterial = this.casterMaterial.clone();
+    Object.assign(this.veilMaterial, {uniforms: places, transparent: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
+    this.veil = new Mesh(this.geometry, this.veilMaterial);
+    this.veil.frustumCulled = false;
+    this.veil.renderOrder = 1;
+    this.veil.visible = false;
+    this.mesh.renderOrder = 2;
+    this.mesh.add(this.veil);
   }
 
   update() {
@@ -74,7 +85,7 @@ export class Body {
   set ghost(on) {
     this.uniforms.ghost.value = on ? 1 : 0;
     this.material.transparent = on;
-    this.material.depthWrite = !on;
+    this.veil.visible = on;
   }
 
   set wireframe(on) {
@@ -100,7 +111,7 @@ export class Body {
     this.geometry.dispose();
     this.lines?.geometry.dispose();
     this.uniforms.colour_map.value.dispose();
-    for (const material of [this.material, this.lineMaterial, this.casterMaterial]) material.dispose();
+    for (const material of [this.material, this.lineMaterial, this.casterMaterial, this.veilMaterial]) material.dispose();
   }
 }
 
@@ -149,7 +160,7 @@ const FRAGMENT = `
   uniform int colours;
   uniform float ghost, sheet;
   ${SHADING}
-  ${SHADOW}
+  ${shadowBy(8)}
   in vec3 at, normal;
   in vec4 painted;
   in float sky, share;
@@ -171,8 +182,8 @@ const FRAGMENT = `
     }
     colour = colour * (1.0 - painted.a) + painted.rgb;
     float cosine = dot(n, key_towards);
-    float key = cosine > 0.0 ? cosine * unshadowed(at + 0.012 * scene_radius * n, 0.008, 0.0) : 0.0;
-    float alpha = ghost > 0.5 ? mix(0.16, 0.75, pow(1.0 - abs(dot(n, to_eye)), 2.0)) : 1.0;
+    float key = cosine > 0.0 ? cosine * unshadowed(at + 0.012 * scene_radius * n, 0.008) : 0.0;
+    float alpha = ghost > 0.5 ? mix(0.30, 0.95, pow(1.0 - abs(dot(n, to_eye)), 1.5)) : 1.0;
     pixel = vec4(to_screen(shade(colour, at, n, to_eye, sky, key)), alpha);
   }
 `;

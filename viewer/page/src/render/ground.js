@@ -4,9 +4,9 @@ import {
   ZeroFactor,
 } from 'three';
 import {PixelPass, PRECISION} from './pixel_pass.js';
-import {SHADOW} from './shading.js';
+import {shadowBy} from './shading.js';
 
-const PLACES = 96, KEY_SIZE = 256;
+const PLACES = 96, KEY_SIZE = 192;
 const REACH = 4;         // half the ground's side over the object's radius
 const STRENGTH = 0.78;   // of shadows
 
@@ -26,7 +26,7 @@ export class Ground {
       {positions: {value: this.positions}, normals: {value: this.normals}}, LinearFilter);
     this.keyTarget = new WebGLRenderTarget(KEY_SIZE, KEY_SIZE, {minFilter: LinearFilter, magFilter: LinearFilter, depthBuffer: false});
     this.toWorld = {corner: {value: new Vector3()}, across: {value: new Vector3()}, along: {value: new Vector3()}};
-    this.keyPass = new PixelPass(KEY, {...this.toWorld, ...light}, {defines: {SHADOW_TAPS: 32}});
+    this.keyPass = new PixelPass(KEY, {...this.toWorld, ...light});
     this.uniforms = {
       sky_light: {value: sky}, key_light: {value: this.keyTarget.texture}, key_towards: light.key_towards,
       up: light.up, lines: {value: 0}, line_colour: {value: new Color()}, cell: {value: 1}, strength: {value: STRENGTH},
@@ -84,11 +84,11 @@ function placesTexture() {
 
 const KEY = `
   uniform vec3 corner, across, along;
-  ${SHADOW}
+  ${shadowBy(20)}
   out vec4 light;
   void main() {
     vec2 share = gl_FragCoord.xy / ${KEY_SIZE}.0;
-    light = vec4(vec3(unshadowed(corner + share.x * across + share.y * along, 0.03, 0.0)), 1);
+    light = vec4(vec3(unshadowed(corner + share.x * across + share.y * along, 0.03)), 1);
   }
 `;
 

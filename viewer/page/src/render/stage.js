@@ -7,6 +7,7 @@ import {Deformer} from './deformer.js';
 import {Ground} from './ground.js';
 import {Lamp} from './lamp.js';
 import {PRECISION} from './pixel_pass.js';
+import {drawsInSoftware, Quality} from './quality.js';
 import {Light} from './shading.js';
 import {SkyLight} from './sky_light.js';
 import {THEMES} from './themes.js';
@@ -14,6 +15,7 @@ import {upAxisOf} from './up_axis.js';
 
 const KEY_MAP_SIZE = 1024;
 const SETTLED = 96;                       // lamps after the last change that make the sky's light complete
+const SETTLED_IN_SOFTWARE = 32;           // less complete, but soon
 const AZIMUTH = 30, ELEVATION = 18;       // degrees, as in Supple's own pictures
 const FIELD_OF_VIEW = 24;
 
@@ -22,9 +24,11 @@ export class Stage {
   /** @param {HTMLElement} parent */
   constructor(parent) {
     this.parent = parent;
-    this.renderer = new WebGLRenderer({antialias: true, powerPreference: 'high-performance'});
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
-    this.renderer.autoClear = true;
+    this.software = drawsInSoftware();
+    this.renderer = new WebGLRenderer({antialias: !this.software, powerPreference: 'high-performance'});
+    this.pixelRatio = Math.min(2, window.devicePixelRatio);
+    this.quality = new Quality((scale) => this.renderer.setPixelRatio(this.pixelRatio * scale));
+    this.renderer.setPixelRatio(this.pixelRatio);
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute('aria-label', 'The object. Drag beside it to turn the view, drag on it to pull.');
@@ -86,15 +90,20 @@ export class Stage {
     this.ground.uniforms.lines.value = height === null ? 0 : 1;
     this.light.uniforms.ground_height.value = this.groundHeight;
     this.ground.place(this.up, this.groundHeight, this.home);
-    this.unsettled = SETTLED;
+    this.unsettled = this.software ? SETTLED_IN_SOFTWARE : SETTLED;
     this.invalidate();
   }
 
   /** Tells that the shape has moved. */
   shapeChanged() {
     this.moved = true;
-    this.unsettled = SETTLED;
+    this.unsettled = this.software ? SETTLED_IN_SOFTWARE : SETTLED;
     this.invalidate();
+  }
+
+  /** Whether the last picture is as good as it gets. */
+  get settled() {
+    return this.unsettled <= 0 && this.quality.shown === 1 && this.request === null;
   }
 
   invalidate() {
@@ -175,14 +184,18 @@ export class Stage {
 
   /** Draws at once, so that the canvas can be read in the same turn. */
   drawNow() {
+    this.quality.rest();
     this.#draw(performance.now());
   }
 
   #tick(time) {
     this.request = null;
+    this.quality.begin(time, this.pressed);
     this.controls.update();
     this.#draw(time);
-    if (this.unsettled > 0) this.invalidate();
+    this.pressed = this.unsettled > 0;
+    if (this.pressed) this.invalidate();
+    this.quality.end(() => this.drawNow());
   }
 
   #draw(time) {
@@ -209,7 +222,9 @@ export class Stage {
     this.keyLamp.aim(this.light.uniforms.key_towards.value, this.ball);
     this.keyLamp.look(renderer, this.body.casters);
     this.ground.update(renderer);
-    if (this.unsettled-- > 0) this.sky.refine(this.up, this.ball);
+    // Without a graphics card a moving object keeps the light that it had at rest.
+    const busy = this.software && this.moved && this.sky.count > SETTLED;
+    if (this.unsettled-- > 0 && !busy) this.sky.refine(this.up, this.ball);
     const distance = camera.position.distanceTo(new Vector3(...this.home.centre));
     camera.near = Math.max(1e-3 * this.home.radius, distance - 12 * this.home.radius);
     camera.far = distance + 40 * this.home.radius;
