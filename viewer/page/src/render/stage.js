@@ -103,7 +103,7 @@ export class Stage {
 
   /** Whether the last picture is as good as it gets. */
   get settled() {
-    return this.unsettled <= 0 && this.quality.shown === 1 && this.request === null;
+    return this.unsettled <= 0 && this.quality.shown === 1 && !this.request;
   }
 
   invalidate() {
