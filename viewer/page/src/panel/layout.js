@@ -57,6 +57,7 @@ export class Layout {
       this.panel.element, ...(live ? [this.plots.element] : []), this.legend.element, this.transport, this.connection,
       this.toasts.element, this.help, this.progress);
     this.modes.classList.add('modes');
+    new ResizeObserver(() => this.clearPanel()).observe(root);
   }
 
   setModel(model, session) {
@@ -82,6 +83,14 @@ export class Layout {
   showOptions({tool, panels}) {
     this.toolBar.show(tool);
     this.root.classList.toggle('bare', !panels);
+    this.clearPanel();
+  }
+
+  /** Tells the stage how much of it the panel covers at the right. */
+  clearPanel() {
+    const panel = this.panel.element.getBoundingClientRect(), whole = this.root.getBoundingClientRect();
+    const beside = panel.width > 0 && panel.left > 0.4 * whole.width;
+    this.app.stage?.setInset(beside ? whole.right - panel.left : 0);
   }
 
   showFrame(frame) {

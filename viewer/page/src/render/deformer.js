@@ -48,8 +48,9 @@ export class Deformer {
   /** Positions as the graphics card has them, nodes × 3: slow, for tests. */
   readPositions() {
     const {columns, rows} = this.grid, {nodes} = this.shape.model.about;
-    const texels = this.positionTarget ? new Float32Array(4 * columns * rows) : this.positions.image.data;
-    if (this.positionTarget)
+    const uploaded = this.positions === this.uploadedPositions;
+    const texels = uploaded ? this.positions.image.data : new Float32Array(4 * columns * rows);
+    if (!uploaded)
       this.renderer.readRenderTargetPixels(this.positionTarget, 0, 0, columns, rows, texels);
     return Float32Array.from({length: 3 * nodes}, (_, i) => texels[4 * Math.floor(i / 3) + i % 3]);
   }

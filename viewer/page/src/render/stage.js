@@ -45,6 +45,7 @@ export class Stage {
     this.themeName = 'light';
     this.ball = {centre: [0, 0, 0], radius: 1};
     this.unsettled = 0;
+    this.inset = 0;  // pixels at the right that a panel covers
     new ResizeObserver(() => this.#resize()).observe(parent);
     this.#resize();
   }
@@ -121,7 +122,7 @@ export class Stage {
       : front.multiplyScalar(Math.cos(rad(AZIMUTH))).addScaledVector(right, Math.sin(rad(AZIMUTH)))
           .multiplyScalar(Math.cos(rad(ELEVATION))).addScaledVector(this.up, Math.sin(rad(ELEVATION)));
     this.framed = true;
-    const narrow = Math.min(1, this.camera.aspect);
+    const narrow = Math.min(1, (this.parent.clientWidth - this.inset) / this.parent.clientHeight);
     const distance = 0.92 * radius / Math.sin(rad(FIELD_OF_VIEW / 2)) / narrow;
     this.controls.target.copy(centreOfView);
     this.camera.position.copy(centreOfView).addScaledVector(away, distance);
@@ -129,6 +130,13 @@ export class Stage {
     this.controls.maxDistance = 60 * radius;
     this.controls.update();
     this.invalidate();
+  }
+
+  /** Keeps the object's middle clear of what covers so many pixels at the right. */
+  setInset(right) {
+    if (right === this.inset) return;
+    this.inset = right;
+    this.#resize();
   }
 
   /** Turns around another point from now on. */
@@ -236,7 +244,7 @@ export class Stage {
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.camera.setViewOffset(width, height, this.inset / 2, 0, width, height);
     if (this.body) this.drawNow();  // or the canvas would be blank until the next picture
   }
 
