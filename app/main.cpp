@@ -9,6 +9,9 @@
 #include <app/commands/select_command.hpp>
 #include <app/commands/simulate_command.hpp>
 #include <app/commands/stress_command.hpp>
+#ifdef SUPPLE_HAS_VIEWER
+#include <app/commands/view_command.hpp>
+#endif
 #include <app/report/exit_guard.hpp>
 #include <app/report/terminal.hpp>
 #include <core/check.hpp>
@@ -30,9 +33,12 @@ namespace {
 using namespace supple;
 
 /// In the order of the help.
-using Commands =
-    std::tuple<ReduceCommand, SimulateCommand, EditCommand, FidelityCommand, CompareCommand, CompareSelectorsCommand,
-               ParetoCommand, StressCommand, SelectCommand, InfoCommand, MeshCommand>;
+using Commands = std::tuple<ReduceCommand, SimulateCommand, EditCommand,
+#ifdef SUPPLE_HAS_VIEWER
+                            ViewCommand,
+#endif
+                            FidelityCommand, CompareCommand, CompareSelectorsCommand, ParetoCommand, StressCommand,
+                            SelectCommand, InfoCommand, MeshCommand>;
 
 /// Messages of any origin on one line.
 int fail(int code, std::string message) {

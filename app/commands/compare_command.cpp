@@ -3,8 +3,8 @@
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
+#include <app/scene/coloured_picture.hpp>
 #include <app/scene/comparison.hpp>
-#include <app/scene/surface.hpp>
 #include <app/scene/trajectory.hpp>
 #include <core/check.hpp>
 #include <core/parallel.hpp>

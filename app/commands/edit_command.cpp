@@ -4,9 +4,7 @@
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
-#include <app/scene/edit_scene.hpp>
 #include <app/scene/frames.hpp>
-#include <app/scene/solver_names.hpp>
 #include <core/check.hpp>
 #include <core/median.hpp>
 #include <core/parallel.hpp>
@@ -14,10 +12,12 @@
 #include <core/stopwatch.hpp>
 #include <core/version.hpp>
 #include <io/table/csv.hpp>
+#include <numerics/optimize/solver_names.hpp>
 #include <physics/body/body_system.hpp>
 #include <physics/system/node_numbering.hpp>
 #include <reduction/editing/editor.hpp>
 #include <reduction/pipeline/reduce.hpp>
+#include <viewer/scene/edit_scene_file.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -43,9 +43,6 @@ struct EditProblem {
   std::vector<std::vector<RigidMotion>> path;  ///< of all handles in every solve
   double softest_eigenvalue, mass, diagonal;   ///< of the object [1/s², kg, m]
 };
-
-/// From here on the shapes of a subspace are off (docs/decisions): handles may hold so much, as a share of the diagonal.
-constexpr double held_at_most = 0.01;
 
 struct EditRun {
   std::vector<SolveRecord> solves;
@@ -191,7 +188,7 @@ void EditCommand::run() const {
     missed += solve.report.status != Status::Converged;
     iterations += solve.report.iterations;
     worst = std::max(worst, solve.report.residual);
-    strained += solve.held > held_at_most;
+    strained += solve.held > held_over_diagonal_at_most;
     most_held = std::max(most_held, solve.held);
     most_left = std::max(most_left, solve.left);
   }

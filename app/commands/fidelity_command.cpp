@@ -4,8 +4,7 @@
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
-#include <app/scene/edit_scene.hpp>
-#include <app/scene/surface.hpp>
+#include <app/scene/coloured_picture.hpp>
 #include <core/check.hpp>
 #include <core/output_file.hpp>
 #include <core/parallel.hpp>
@@ -18,6 +17,7 @@
 #include <reduction/editing/editor.hpp>
 #include <reduction/pipeline/reduce.hpp>
 #include <reduction/system/galerkin_system.hpp>
+#include <viewer/scene/edit_scene_file.hpp>
 
 #include <CLI/CLI.hpp>
 

@@ -5,8 +5,6 @@
 #include <app/report/terminal.hpp>
 #include <core/check.hpp>
 #include <core/version.hpp>
-#include <io/builtin/builtin_meshes.hpp>
-#include <io/builtin/builtin_surfaces.hpp>
 #include <physics/mesh/tet_mesh.hpp>
 #include <reduction/model/reduced_model.hpp>
 
@@ -14,20 +12,12 @@
 
 #include <algorithm>
 #include <concepts>
-#include <fstream>
 #include <numbers>
 #include <set>
 
 namespace supple {
 
 namespace {
-
-/// Whether a file begins as a tensor file does: the length of a header, and the header's brace.
-bool is_tensor_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  char head[9] = {};
-  return file.read(head, sizeof head) && head[8] == '{' && head[4] == 0 && head[5] == 0 && head[6] == 0 && head[7] == 0;
-}
 
 std::string shown_point(const Point& p) {
   return shown(p[0]) + " x " + shown(p[1]) + " x " + shown(p[2]) + " m";
@@ -185,7 +175,7 @@ void InfoCommand::run() const {
   Rows rows;
   Json report{{"command", "info"}, {"version", SUPPLE_VERSION}, {"source", source}};
   std::string kind = "mesh";
-  if (!is_builtin(source) && !is_builtin_surface(source) && is_tensor_file(source)) {
+  if (is_model(source)) {
     kind = "reduced model";
     const ReducedModel model = load_model(source);
     report["kind"] = "model";

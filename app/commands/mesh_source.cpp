@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <fstream>
 
 namespace supple {
 
@@ -42,6 +43,13 @@ NamedMesh load_mesh(const std::string& spec) {
     std::visit([&](auto&& mesh) { result.mesh = std::move(mesh); }, read_solid_mesh(spec, &result.notes));
   for (const std::string& warning : result.notes.warnings) warn(spec + ": " + warning);
   return result;
+}
+
+bool is_model(const std::string& source) {
+  if (is_builtin(source) || is_builtin_surface(source)) return false;
+  std::ifstream file(source, std::ios::binary);
+  char head[9] = {};
+  return file.read(head, sizeof head) && head[8] == '{' && head[4] == 0 && head[5] == 0 && head[6] == 0 && head[7] == 0;
 }
 
 std::string builtin_help() {

@@ -23,6 +23,8 @@ struct NamedMesh {
 /// .stl), anything else a solid.
 /// Tells the terminal of the notes' warnings.
 NamedMesh load_mesh(const std::string& spec);
+/// Whether a file, not a mesh, is named, and begins as a model does: with the length of a header, and its brace.
+bool is_model(const std::string& source);
 /// The built-ins and their sizes, for the foot of a help text.
 std::string builtin_help();
 

@@ -6,8 +6,8 @@
 #include <app/report/json_report.hpp>
 #include <app/report/machine.hpp>
 #include <app/report/terminal.hpp>
+#include <app/scene/coloured_picture.hpp>
 #include <app/scene/model_search.hpp>
-#include <app/scene/surface.hpp>
 #include <core/parallel.hpp>
 #include <core/peak_memory.hpp>
 #include <core/stopwatch.hpp>

@@ -16,8 +16,6 @@ namespace supple {
 
 namespace {
 
-constexpr auto object_group = "Object";
-
 void declare_material(CLI::App& command, ProblemOptions& problem) {
   command.add_option("--material", problem.law, "Law, see below")
       ->capture_default_str()

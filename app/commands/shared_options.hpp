@@ -15,6 +15,8 @@ namespace supple {
 
 struct ProblemOptions;
 
+/// Where the help lists what the object is: its material, what holds it.
+constexpr auto object_group = "Object";
 /// Where the help lists how a model comes about: the subspace, the training, the selection.
 constexpr auto method_group = "Method";
 

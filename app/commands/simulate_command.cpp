@@ -4,10 +4,9 @@
 #include <app/report/exit_guard.hpp>
 #include <app/report/json_report.hpp>
 #include <app/report/terminal.hpp>
+#include <app/scene/coloured_picture.hpp>
 #include <app/scene/frames.hpp>
 #include <app/scene/simulation.hpp>
-#include <app/scene/solver_names.hpp>
-#include <app/scene/surface.hpp>
 #include <app/scene/trajectory.hpp>
 #include <core/parallel.hpp>
 #include <core/peak_memory.hpp>
@@ -16,6 +15,7 @@
 #include <io/frames/vtu_writer.hpp>
 #include <io/picture/plot.hpp>
 #include <io/table/csv.hpp>
+#include <numerics/optimize/solver_names.hpp>
 #include <physics/load/outside_force_library.hpp>
 #include <physics/time/integrator_library.hpp>
 #include <reduction/model/reduced_model.hpp>

@@ -25,6 +25,11 @@ std::string& farewell() {
   return *text;
 }
 
+std::function<void()>& last_deed() {
+  static auto* const deed = new std::function<void()>;
+  return *deed;
+}
+
 std::atomic<int> last_signal = 0;
 int caught[2];  // a pipe from the handler, in which hardly anything is allowed, to the thread
 
@@ -46,6 +51,7 @@ void watch_for_signals() {
     while (::read(caught[0], &signal, 1) != 1)
       if (errno != EINTR) return;
     const std::lock_guard lock(files());
+    if (last_deed()) last_deed()();
     clear_progress();
     abandon_output_files();
     if (!farewell().empty()) std::fprintf(stderr, "supple: %s\n", farewell().c_str());
@@ -64,6 +70,11 @@ void watch_for_signals() {
 void on_signal_say(std::string text) {
   const std::lock_guard lock(files());
   farewell() = std::move(text);
+}
+
+void on_signal_do(std::function<void()> last) {
+  const std::lock_guard lock(files());
+  last_deed() = std::move(last);
 }
 
 int exit_code(int code) {

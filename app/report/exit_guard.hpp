@@ -2,6 +2,7 @@
 /// \file Guard against Ctrl-C in the middle of a file; elsewhere it ends the command at once.
 
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <string>
 
@@ -13,6 +14,10 @@ void watch_for_signals();
 
 /// What is said on stderr if a signal ends the process from now on: one line, such as where results so far are kept.
 void on_signal_say(std::string text);
+
+/// What is done if a signal ends the process from now on, in the thread that waits for it: what takes a moment at most, such
+/// as taking leave of clients.
+void on_signal_do(std::function<void()> last);
 
 /// What the process ends with where it would have ended with `code` by itself: 128 + the signal that came before, whose
 /// thread may still be waiting for its turn.

@@ -1,5 +1,5 @@
 #include <app/scene/comparison.hpp>
-#include <app/scene/surface.hpp>
+#include <app/scene/coloured_picture.hpp>
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 #include <app/report/terminal.hpp>
 #include <app/scene/scene.hpp>
-#include <app/scene/solver_names.hpp>
-#include <app/scene/surface.hpp>
+#include <numerics/optimize/solver_names.hpp>
+#include <app/scene/coloured_picture.hpp>
 #include <core/check.hpp>
 #include <io/mesh/node_sets.hpp>
 #include <io/table/csv.hpp>

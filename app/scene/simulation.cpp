@@ -1,6 +1,6 @@
 #include <app/report/terminal.hpp>
 #include <app/scene/simulation.hpp>
-#include <app/scene/solver_names.hpp>
+#include <numerics/optimize/solver_names.hpp>
 #include <core/stopwatch.hpp>
 #include <physics/body/body_system.hpp>
 #include <physics/time/backward_difference.hpp>
@@ -189,12 +189,6 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
   result.v.conservativeResize(frames, Eigen::NoChange);
   result.tracked.conservativeResize(static_cast<Index>(result.steps.size()), Eigen::NoChange);
   return result;
-}
-
-/// Single for dense bases, whose rows are too many for the caches near a core.
-RowPrecision default_precision(const ReducedModel& model) {
-  return std::holds_alternative<std::shared_ptr<const DenseBasis>>(model.subspace) ? RowPrecision::Single
-                                                                                   : RowPrecision::Double;
 }
 
 /// How long the loads of a scene, all at once, take to carry the whole object by its own diagonal from rest [s]; springs and

@@ -189,6 +189,10 @@ bool JsonFields::contains(std::string_view key) const {
   return as_json(value_).contains(key);
 }
 
+bool JsonFields::is_null(std::string_view key) const {
+  return field(key).value.is_null();
+}
+
 double JsonFields::number(std::string_view key, const Interval& range, std::string_view unit) const {
   return field(key).number(range, unit);
 }

@@ -48,6 +48,7 @@ class JsonFields {
   static JsonFields parse(std::string_view text, std::string source);
 
   bool contains(std::string_view key) const;
+  bool is_null(std::string_view key) const;
   const std::string& source() const;
   /// Where this object stands, "/springs/2"; empty for the outermost.
   const std::string& place() const { return place_; }

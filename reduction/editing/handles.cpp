@@ -17,16 +17,30 @@ RigidMotion RigidMotion::turn(const Point& axis, double angle, const Point& cent
   return motion;
 }
 
-RigidMotion RigidMotion::from(const Eigen::Matrix4d& matrix) {
+RigidMotion RigidMotion::from(const Eigen::Matrix4d& matrix, double tolerance) {
   const Eigen::Matrix3d A = matrix.topLeftCorner<3, 3>();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Matrix3d R = svd.matrixU() * svd.matrixV().transpose();
-  require(matrix.allFinite() && (A - R).norm() < 1e-4 && R.determinant() > 0 &&
-              (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).norm() < 1e-4,
+  require(matrix.allFinite() && (A - R).norm() < tolerance && R.determinant() > 0 &&
+              (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).norm() < tolerance,
           "the matrix of a handle is no rigid motion");
   RigidMotion motion;
   motion.rotation = R;
   motion.translation = matrix.topRightCorner<3, 1>();
+  return motion;
+}
+
+RigidMotion RigidMotion::fit(const Points& before, const Points& after) {
+  require(before.rows() > 0, "there are no points to fit a motion to");
+  require_size("after", after.rows(), before.rows());
+  const Eigen::RowVector3d from = before.colwise().mean(), to = after.colwise().mean();
+  const Eigen::Matrix3d spread = (after.rowwise() - to).transpose() * (before.rowwise() - from);
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(spread, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d U = svd.matrixU(), V = svd.matrixV();
+  const Point signs(1, 1, (U * V.transpose()).determinant() < 0 ? -1 : 1);  // a rotation, no reflection
+  RigidMotion motion;
+  motion.rotation = U * signs.asDiagonal() * V.transpose();
+  motion.translation = to.transpose() - motion.rotation * from.transpose();
   return motion;
 }
 

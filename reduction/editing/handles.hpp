@@ -26,9 +26,11 @@ struct RigidMotion {
   /// A turn by `angle` [rad] about an axis through a centre [m], then a translation [m].
   static RigidMotion turn(const Point& axis, double angle, const Point& centre,
                           const Point& translation = Point::Zero());
-  /// \param matrix  4 × 4, acting on (x, 1). \throws std::invalid_argument unless it is a rigid motion to 1e-4; its
+  /// \param matrix  4 × 4, acting on (x, 1). \throws std::invalid_argument unless it is a rigid motion to `tolerance`; its
   /// rotation is the nearest proper one.
-  static RigidMotion from(const Eigen::Matrix4d& matrix);
+  static RigidMotion from(const Eigen::Matrix4d& matrix, double tolerance = 1e-4);
+  /// The motion that takes some points nearest to where they have gone, least squares. \see Kabsch 1976.
+  static RigidMotion fit(const Points& before, const Points& after);
   /// The share s ∈ [0, 1] of the motion of a body about `centre`: its rotation at constant speed about a fixed axis,
   /// its translation along a line.
   RigidMotion part(double s, const Point& centre) const;
@@ -64,5 +66,8 @@ double control_energy(const Handle& handle, const Points& rest_positions, Vector
 /// springs stiffer than default_handle_stiffness() the same forces hold less: E is what they would hold in those.
 double control_displacement(const std::vector<Handle>& handles, const Points& rest_positions, VectorIn displacement,
                             double softest_eigenvalue, double mass);
+
+/// From here on the shapes of a subspace are off (docs/decisions): so much may handles hold, as a share of the diagonal.
+inline constexpr double held_over_diagonal_at_most = 0.01;
 
 }  // namespace supple

@@ -33,6 +33,10 @@ struct ReducedModel : ReducedForces<AnyBasis> {
   AnySystem<Matrix> system(RowPrecision precision = RowPrecision::Double) const;
 };
 
+/// How simulations of a model keep rows: in single precision where the basis is dense, whose rows are too many for the
+/// caches near a core.
+RowPrecision default_precision(const ReducedModel& model);
+
 /// Vibration modes of a model, of its exact stiffness at rest.
 ReducedModes reduced_modes(const ReducedModel& model);
 

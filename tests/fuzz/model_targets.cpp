@@ -1,5 +1,5 @@
 #include <app/commands/problem_options.hpp>
-#include <app/scene/edit_scene.hpp>
+#include <viewer/scene/edit_scene_file.hpp>
 #include <app/scene/pose_file.hpp>
 #include <app/scene/scene.hpp>
 #include <app/scene/trajectory.hpp>

@@ -1,16 +1,11 @@
 #include <app/report/exit_guard.hpp>
-#include <app/scene/surface.hpp>
+#include <app/scene/coloured_picture.hpp>
 
 #include <cmath>
 
 namespace supple {
 
 namespace {
-
-std::vector<Triangle> visible_triangles(const Body& body) {
-  if (const Shell* shell = std::get_if<Shell>(&body)) return shell->mesh.triangles;
-  return visit_solid(body, [](const auto& solid) { return boundary_faces(solid.mesh); });
-}
 
 /// The end of a scale that holds all scalars of the objects: their largest, rounded up to two digits.
 double scale_end(const std::vector<PictureObject>& objects) {
@@ -23,22 +18,6 @@ double scale_end(const std::vector<PictureObject>& objects) {
 }
 
 }  // namespace
-
-Surface::Surface(const Body& body) : triangles(visible_triangles(body)) {
-  std::vector<Index> number(num_nodes(body), -1);
-  for (Triangle& triangle : triangles)
-    for (Index& v : triangle) {
-      if (number[v] < 0) {
-        number[v] = static_cast<Index>(nodes.size());
-        nodes.push_back(v);
-      }
-      v = number[v];
-    }
-}
-
-Points Surface::rows(const Points& all) const {
-  return all(nodes, Eigen::all);
-}
 
 void write_picture(const std::filesystem::path& path, const std::vector<PictureObject>& objects,
                    PictureOptions options) {

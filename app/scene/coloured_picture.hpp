@@ -1,24 +1,13 @@
 #pragma once
-/// \file Surface of a mesh, as pictures and ParaView see it.
+/// \file Pictures of objects, coloured by a length.
 
 #include <io/picture/picture.hpp>
-#include <physics/body/body.hpp>
+#include <physics/body/surface.hpp>
 
 #include <filesystem>
 #include <vector>
 
 namespace supple {
-
-/// The boundary of a solid, its faces cut into triangles, or a shell itself: triangles over `nodes`, which are indices
-/// into the mesh.
-struct Surface {
-  std::vector<Triangle> triangles;
-  std::vector<Index> nodes;
-
-  explicit Surface(const Body& body);
-  /// The rows of the surface's nodes.
-  Points rows(const Points& all) const;
-};
 
 /// An interleaved vector x₀ y₀ z₀ x₁ … over the nodes as n × 3.
 inline Eigen::Map<const Points> as_points(const Vector& u) {

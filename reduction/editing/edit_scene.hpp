@@ -1,11 +1,9 @@
 #pragma once
-/// \file Scripted edits: handles on an object and their motions, from a JSON file; see docs/edit-scene.md.
+/// \file Scripted edits as data: handles on an object and their motions.
 
 #include <numerics/optimize/warm_solver.hpp>
-#include <physics/body/body.hpp>
 #include <reduction/editing/handles.hpp>
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +16,7 @@ struct HandleRegion {
   std::vector<Index> nodes;
   std::optional<Index> samples;
   std::optional<double> weight;  ///< [N/m]
+  bool movable = true;           ///< whether a viewer lets one drag it
 };
 
 /// Moves some handles to new places (from rest, not from the last edit), on the way through `increments` solves.
@@ -35,9 +34,6 @@ struct EditScene {
   std::optional<Index> max_iterations;
   std::uint64_t seed = 1;  ///< of the samples
 };
-
-/// \throws InputError naming file, place and what was expected there; unknown keys are refused.
-EditScene read_edit_scene(const std::filesystem::path& path, const Body& body);
 
 /// The handles, ready to grasp. Samples not stated: 100 a handle. Weights not stated: such that all springs of a handle
 /// together have the default_handle_stiffness().

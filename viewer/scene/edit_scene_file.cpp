@@ -1,8 +1,9 @@
-#include <app/scene/edit_scene.hpp>
-#include <app/scene/solver_names.hpp>
 #include <core/check.hpp>
 #include <io/mesh/node_sets.hpp>
-#include <io/text/json_fields.hpp>
+#include <numerics/optimize/solver_names.hpp>
+#include <viewer/scene/edit_scene_file.hpp>
+
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -16,26 +17,38 @@ int read_label(const JsonFields& fields) {
   return static_cast<int>(fields.integer("label", between(Limits::min(), Limits::max())));
 }
 
-HandleRegion read_handle(const JsonFields& fields, const std::filesystem::path& folder, const Points& nodes) {
+std::vector<Index> listed_nodes(const JsonFields& fields, const Points& nodes) {
+  std::vector<Index> list = fields.integers("indices", between(0, static_cast<double>(nodes.rows() - 1)));
+  std::ranges::sort(list);
+  list.erase(std::ranges::unique(list).begin(), list.end());
+  return list;
+}
+
+/// \param folder  where files are looked for; null: there are none.
+HandleRegion read_handle(const JsonFields& fields, const std::filesystem::path* folder, const Points& nodes) {
   HandleRegion handle;
   handle.name = fields.text("name");
-  if (fields.contains("nodes") + fields.contains("box") + fields.contains("file") != 1)
-    throw InputError(fields.source() + ": " + fields.place() + " needs one of 'nodes', 'box' and 'file'");
+  if (fields.contains("nodes") + fields.contains("indices") + fields.contains("box") + fields.contains("file") != 1)
+    throw InputError(fields.source() + ": " + fields.place() + " needs one of 'nodes', 'indices', 'box' and 'file'");
+  if (!folder && fields.contains("file")) fields.fail("file", "names a file, of which none is read here");
   try {
     if (fields.contains("nodes"))
       handle.nodes = select_nodes(nodes, fields.text("nodes"));
+    else if (fields.contains("indices"))
+      handle.nodes = listed_nodes(fields, nodes);
     else if (fields.contains("box"))
       handle.nodes = nodes_in_box(nodes, fields.text("box"));
     else if (fields.contains("label"))
-      handle.nodes = nodes_with_label(nodes, folder / fields.text("file"), read_label(fields));
+      handle.nodes = nodes_with_label(nodes, *folder / fields.text("file"), read_label(fields));
     else
-      handle.nodes = read_node_set(nodes, folder / fields.text("file"));
+      handle.nodes = read_node_set(nodes, *folder / fields.text("file"));
   } catch (const InputError& error) {
     if (std::string_view(error.what()).starts_with(fields.source())) throw;
     throw InputError(fields.source() + ": " + fields.place() + ": " + error.what());
   }
   if (fields.contains("samples")) handle.samples = fields.integer("samples", at_least(1));
   if (fields.contains("weight")) handle.weight = fields.number("weight", positive, "N/m");
+  handle.movable = fields.flag_or("movable", true);
   return handle;
 }
 
@@ -64,16 +77,13 @@ RigidMotion read_motion(const JsonFields& fields, const HandleRegion& handle, co
                            translation);
 }
 
-}  // namespace
-
-EditScene read_edit_scene(const std::filesystem::path& path, const Body& body) {
-  const JsonFields file = JsonFields::read(path);
+EditScene read_scene(const JsonFields& file, const Body& body, const std::filesystem::path* folder) {
   const Points& nodes = node_positions(body);
   EditScene scene;
-  scene.description = file.text_or("description", path.filename().string());
+  scene.description = file.text_or("description", "");
   scene.seed = static_cast<std::uint64_t>(file.integer_or("seed", 1, non_negative));
   for (const JsonFields& fields : file.objects("handles")) {
-    scene.handles.push_back(read_handle(fields, path.parent_path(), nodes));
+    scene.handles.push_back(read_handle(fields, folder, nodes));
     std::erase_if(scene.handles.back().nodes,
                   [&](Index v) { return std::ranges::binary_search(fixed_nodes(body), v); });
     if (scene.handles.back().nodes.empty())
@@ -101,38 +111,54 @@ EditScene read_edit_scene(const std::filesystem::path& path, const Body& body) {
     if (solver->contains("tolerance")) scene.tolerance = solver->number("tolerance", positive);
     if (solver->contains("max_iterations")) scene.max_iterations = solver->integer("max_iterations", at_least(1));
   }
+  return scene;
+}
+
+}  // namespace
+
+EditScene read_edit_scene(const std::filesystem::path& path, const Body& body) {
+  const JsonFields file = JsonFields::read(path);
+  const std::filesystem::path folder = path.parent_path();
+  EditScene scene = read_scene(file, body, &folder);
+  if (scene.description.empty()) scene.description = path.filename().string();
   file.finish();
   return scene;
 }
 
-std::vector<Handle> make_handles(const EditScene& scene, double softest_eigenvalue, double mass) {
-  std::vector<Handle> handles;
-  for (const HandleRegion& region : scene.handles) {
-    const Index count = std::min<Index>(region.samples.value_or(100), static_cast<Index>(region.nodes.size()));
-    const double weight =
-        region.weight.value_or(default_handle_stiffness(softest_eigenvalue, mass) / (2 * static_cast<double>(count)));
-    handles.emplace_back(region.nodes, count, weight, scene.seed + handles.size());
-  }
-  return handles;
+EditScene read_edit_scene(const JsonFields& scene, const Body& body) {
+  return read_scene(scene, body, nullptr);
 }
 
-std::vector<std::vector<RigidMotion>> handle_paths(const EditScene& scene, const std::vector<Handle>& handles,
-                                                   const Points& rest_positions) {
-  std::vector<std::vector<RigidMotion>> path;
-  std::vector<RigidMotion> last(handles.size());
-  for (const Edit& edit : scene.edits) {
-    const std::vector<RigidMotion> start = last;
-    for (Index k = 1; k <= edit.increments; ++k) {
-      for (const auto& [handle, motion] : edit.moves) {
-        const RigidMotion way = motion.after(start[handle].inverse());
-        const Point centre = start[handle](handles[handle].centre(rest_positions));
-        const double share = static_cast<double>(k) / static_cast<double>(edit.increments);
-        last[handle] = k == edit.increments ? motion : way.part(share, centre).after(start[handle]);
-      }
-      path.push_back(last);
-    }
+nlohmann::ordered_json edit_scene_json(const EditScene& scene) {
+  using Json = nlohmann::ordered_json;
+  Json json{{"description", scene.description}, {"seed", scene.seed}, {"handles", Json::array()}};
+  for (const HandleRegion& region : scene.handles) {
+    Json handle{{"name", region.name}, {"indices", region.nodes}};
+    if (region.samples) handle["samples"] = *region.samples;
+    if (region.weight) handle["weight"] = *region.weight;
+    if (!region.movable) handle["movable"] = false;
+    json["handles"].push_back(std::move(handle));
   }
-  return path;
+  json["edits"] = Json::array();
+  for (const Edit& edit : scene.edits) {
+    Json moves = Json::array();
+    for (const auto& [handle, motion] : edit.moves) {
+      Json matrix = Json::array();
+      for (int x = 0; x < 3; ++x)
+        for (const double entry :
+             {motion.rotation(x, 0), motion.rotation(x, 1), motion.rotation(x, 2), motion.translation[x]})
+          matrix.push_back(entry);
+      for (const double entry : {0.0, 0.0, 0.0, 1.0}) matrix.push_back(entry);
+      moves.push_back({{"handle", scene.handles[handle].name}, {"matrix", std::move(matrix)}});
+    }
+    json["edits"].push_back({{"increments", edit.increments}, {"moves", std::move(moves)}});
+  }
+  Json solver = Json::object();
+  if (scene.solver) solver["method"] = name_of_solver(static_solvers, *scene.solver);
+  if (scene.tolerance) solver["tolerance"] = *scene.tolerance;
+  if (scene.max_iterations) solver["max_iterations"] = *scene.max_iterations;
+  if (!solver.empty()) json["solver"] = std::move(solver);
+  return json;
 }
 
 }  // namespace supple

@@ -1,0 +1,143 @@
+#include <app/commands/mesh_source.hpp>
+#include <app/commands/option_checks.hpp>
+#include <app/commands/shared_options.hpp>
+#include <app/commands/view_command.hpp>
+#include <app/report/exit_guard.hpp>
+#include <app/report/terminal.hpp>
+#include <core/check.hpp>
+#include <core/parallel.hpp>
+#include <core/version.hpp>
+#include <io/text/index_file.hpp>
+#include <viewer/server/view_server.hpp>
+#include <viewer/session/view_model.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+
+namespace supple {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The page beside this program: in a tree where it was built, or where it was installed.
+std::optional<fs::path> built_page() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  for (const char* place : {"../viewer/page/dist", "../share/supple/viewer"}) {
+    const fs::path folder = (program.parent_path() / place).lexically_normal();
+    if (fs::exists(folder / "index.html", error)) return folder;
+  }
+  return {};
+}
+
+Resources page_of(const ViewCommand& command) {
+  const std::optional<fs::path> folder = command.page ? command.page : built_page();
+  if (folder) return read_page(*folder);
+  warn(
+      "the page was not built, for npm was missing then: only the session is served. To build it: apt-get install npm, "
+      "then cmake --build BUILD --target viewer_page; or name a built page by --page");
+  return {};
+}
+
+/// Tells the terminal and all clients.
+Progress progress_to(ViewServer& server) {
+  return [&server, bar = progress_bar()](std::string_view stage, double share) {
+    tell(bar, stage, share);
+    server.progress(stage, share);
+  };
+}
+
+std::shared_ptr<const ViewModel> view_model(const ViewCommand& command, ViewServer& server) {
+  const std::string name = fs::path(command.mesh).stem().string();
+  if (is_model(command.mesh)) {
+    server.progress("read model", 0);
+    return std::make_shared<const ViewModel>(load_model(command.mesh), name);
+  }
+  const NamedMesh named = load_mesh(command.mesh);
+  const Body body = load_body(command, named);
+  ReduceOptions options = reduce_options(command, named, body);
+  if (!command.full_loads) options.full_loads = 8;
+  if (command.points) options.points = *command.points;
+  options.singular = SingularModels::Refuse;
+  ReduceReport report;
+  ReducedModel model = reduce(body, options, &report, progress_to(server));
+  clear_progress();
+  if (const auto note = locking_note(command, body)) report.notes.insert(report.notes.begin(), *note);
+  for (const std::string& note : report.notes) warn(note);
+  model.provenance = {
+      {"version", SUPPLE_VERSION}, {"mesh", command.mesh}, {"full_error", exact(report.full_error.total)}};
+  return std::make_shared<const ViewModel>(std::move(model), name, report.notes);
+}
+
+/// \throws InputError for options of meshes that stand beside a model.
+void refuse_options_of_meshes(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0 && (option->get_group() == object_group || option->get_group() == method_group))
+      throw InputError("--" + option->get_lnames().front() + " is for meshes, and this is a model");
+}
+
+/// While it lives, a signal takes leave of the server's clients; where one has, it waits for the end of the process.
+struct Farewell {
+  explicit Farewell(ViewServer& server) {
+    on_signal_do([&server] {
+      server.close();
+      server.wait();
+    });
+  }
+  ~Farewell() { on_signal_do({}); }
+  Farewell(const Farewell&) = delete;
+  Farewell& operator=(const Farewell&) = delete;
+};
+
+}  // namespace
+
+void ViewCommand::run() const {
+  set_num_threads(threads);
+  if (is_model(mesh)) refuse_options_of_meshes(*declared_);
+  ViewServer server({.address = listen, .port = port, .page = page_of(*this)});
+  const Farewell farewell(server);
+  std::printf("%s\n", server.url().c_str());
+  std::fflush(stdout);
+  server.serve(view_model(*this, server));
+  server.wait();
+}
+
+void ViewCommand::declare(CLI::App& app) {
+  CLI::App& command = *app.add_subcommand("view", "Simulate and edit in the browser");
+  declared_ = &command;
+  declare_problem(command, *this);
+  command.get_option("MESH")->description(
+      "A model that 'supple reduce' made, or what is reduced first: a mesh as there, or a built-in, see below");
+  declare_training(command, *this);
+  command.add_option("--points", points, "Largest number of components that stand for all [as 'supple reduce' takes]")
+      ->type_name("S")
+      ->check(whole_number())
+      ->group(method_group);
+  declare_full_loads(command, *this, /*least=*/0);
+  command.add_option("--port", port, "To listen on; 0: a free one")->type_name("N")->capture_default_str();
+  command
+      .add_option("--listen", listen,
+                  "IP address to listen on; any but the loopback interface's asks pages for the token that is printed")
+      ->type_name("ADDRESS")
+      ->capture_default_str();
+  command
+      .add_option("--page", page, "Folder of the page's files [the page that was built or installed with the command]")
+      ->type_name("DIR");
+  declare_threads(command, threads);
+  command.footer([] {
+    return "Prints the address of the page, and ends with Ctrl-C. On a remote machine: ssh -L 8080:127.0.0.1:8080 "
+           "HOST, "
+           "and --port 8080.\n\n" +
+           material_help() + "\n" + subspace_help() + "\n" + builtin_help() +
+           "\nExamples:\n"
+           "supple view dragon.supple\n"
+           "supple view dragon.supple --port 8080\n"
+           "supple view octopus --fix 'y<4%'";
+  });
+  command.callback([this] { run(); });
+}
+
+}  // namespace supple

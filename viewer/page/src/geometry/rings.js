@@ -1,0 +1,36 @@
+/**
+ * The one-ring of each node: for each triangle around it, the other two corners in the triangle's order, so that
+ * (b − v) × (c − v) is twice the triangle's area along its normal.
+ *
+ * @param {Uint32Array} triangles
+ * @param {number} nodes
+ * @returns {{starts: Uint32Array, pairs: Uint32Array}}  pairs of node v: 2·starts[v] … 2·starts[v + 1]
+ */
+export function ringsOf(triangles, nodes) {
+  const starts = new Uint32Array(nodes + 1);
+  for (const v of triangles) starts[v + 1]++;
+  for (let v = 0; v < nodes; ++v) starts[v + 1] += starts[v];
+  const next = starts.slice(0, nodes);
+  const pairs = new Uint32Array(2 * triangles.length);
+  for (let t = 0; t < triangles.length; t += 3)
+    for (let corner = 0; corner < 3; ++corner) {
+      const at = 2 * next[triangles[t + corner]]++;
+      pairs[at] = triangles[t + (corner + 1) % 3];
+      pairs[at + 1] = triangles[t + (corner + 2) % 3];
+    }
+  return {starts, pairs};
+}
+
+/** Each edge once, as pairs of nodes. */
+export function edgesOf({starts, pairs}) {
+  const edges = [];
+  const seen = new Set();
+  for (let v = 0; v + 1 < starts.length; ++v) {
+    seen.clear();
+    for (let k = 2 * starts[v]; k < 2 * starts[v + 1]; ++k) {
+      const w = pairs[k];
+      if (v < w && !seen.has(w)) seen.add(w), edges.push(v, w);
+    }
+  }
+  return Uint32Array.from(edges);
+}

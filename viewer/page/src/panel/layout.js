@@ -1,0 +1,133 @@
+import {count, quantity} from './quantity.js';
+import {helpDialog} from './help.js';
+import {ICONS} from './icons.js';
+import {Legend} from './legend.js';
+import {Panel} from './panel.js';
+import {Plots} from './plots.js';
+import {Toasts} from './toasts.js';
+import {button, element, segments} from './widgets.js';
+
+/** Where everything is on the page. */
+export class Layout {
+  /** @param {HTMLElement} root  @param {import('../app.js').App} app */
+  constructor(root, app) {
+    this.app = app;
+    const {live} = app.session;
+    const ask = (what) => () => app.session.ask({do: what});
+    this.stage = element('main', {class: 'stage'});
+    this.toasts = new Toasts();
+    this.plots = new Plots();
+    this.legend = new Legend();
+    this.legend.show('colours', null);
+    this.panel = new Panel(app);
+    this.help = helpDialog({live});
+
+    this.name = element('h1', {}, 'Supple');
+    this.facts = element('p', {});
+    this.modes = segments('What is done with the object', [['simulate', 'Simulate', '1'], ['edit', 'Edit', '2'], ['modes', 'Modes', '3']],
+      (mode) => app.session.ask({do: 'mode', mode}));
+    this.toolBar = segments('Tool', [
+      ['pull', ICONS.pull, 'Pull (p)'], ['brush', ICONS.brush, 'Select with a brush (b)'],
+      ['box', ICONS.box, 'Select with a box (x)'], ['move', ICONS.move, 'Move handles (m)'],
+    ], (tool) => app.setOptions({tool}));
+    this.toolBar.classList.add('tools');
+    this.play = button('Play', () => app.session.ask({do: app.state?.playing ? 'pause' : 'play'}),
+      {icon: ICONS.play, title: 'Play or pause (Space)', kind: 'round main'});
+    this.record = button('Record', () => this.#record(), {icon: ICONS.record, title: 'Record for .glb and .html', kind: 'round record'});
+    this.clock = element('output', {class: 'clock', 'aria-label': 'Time of the session'});
+    this.badge = element('span', {class: 'badge', hidden: true});
+    this.seek = element('input', {type: 'range', class: 'seek', min: 0, step: 'any', 'aria-label': 'Time', hidden: live,
+      oninput: () => app.session.ask({do: 'seek', time: this.seek.valueAsNumber})});
+    this.transport = element('div', {class: 'transport card'},
+      button('Reset', ask('reset'), {icon: ICONS.reset, title: 'Back to rest (r)', kind: 'round'}), this.play,
+      button('Step', ask('step'), {icon: ICONS.step, title: 'One step (.)', kind: 'round step'}),
+      live ? this.record : this.seek, this.clock, this.badge);
+    this.progress = element('div', {class: 'progress card'}, element('h2', {}, 'Waiting for the server'),
+      element('progress', {max: 1}), element('p', {}, ''));
+    this.connection = element('div', {class: 'connection', role: 'status', hidden: true}, 'The server is gone. Waiting for it to come back …');
+    const corner = element('div', {class: 'corner'},
+      button('Show the whole object', () => app.stage.frame(), {icon: ICONS.frame, title: 'Show the whole object (f)', kind: 'round'}),
+      button('Screenshot', () => app.save('png'), {icon: ICONS.camera, title: 'Screenshot (s)', kind: 'round'}),
+      button('Dark or light', () => app.setOptions({theme: document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark'}),
+        {icon: ICONS.theme, title: 'Dark or light (t)', kind: 'round'}),
+      button('Keys', () => this.toggleHelp(), {icon: ICONS.help, title: 'Keys (?)', kind: 'round'}),
+      button('Panels', () => app.setOptions({panels: !app.options.panels}), {icon: ICONS.panel, title: 'Hide or show panels (h)', kind: 'round'}));
+    this.root = root;
+    root.append(this.stage, element('header', {}, this.name, this.facts), ...(live ? [this.modes, this.toolBar] : []), corner,
+      this.panel.element, ...(live ? [this.plots.element] : []), this.legend.element, this.transport, this.connection,
+      this.toasts.element, this.help, this.progress);
+    this.modes.classList.add('modes');
+    new ResizeObserver(() => this.clearPanel()).observe(root);
+  }
+
+  setModel(model, session) {
+    const {about} = model;
+    document.title = `${about.name} – Supple`;
+    this.name.textContent = about.name;
+    const of = about.solid ? 'solid' : 'shell';
+    const error = about.full_error > 0 ? ` · ${(100 * about.full_error).toPrecision(2)} % off the full object` : '';
+    this.facts.replaceChildren(`${of} of ${count(about.surface_nodes)} vertices`, element('br'),
+      `${about.dimension} unknowns · ${about.components} components${error}`);
+    this.plots.setModel(model);
+    this.panel.setModel(model);
+    if (!session.live) this.seek.max = session.duration;
+  }
+
+  showState(state) {
+    this.modes.show(state.mode);
+    this.root.dataset.mode = state.mode;
+    this.play.innerHTML = state.playing ? ICONS.pause : ICONS.play;
+    this.play.setAttribute('aria-label', state.playing ? 'Pause' : 'Play');
+  }
+
+  showOptions({tool, panels}) {
+    this.toolBar.show(tool);
+    this.root.classList.toggle('bare', !panels);
+    this.clearPanel();
+  }
+
+  /** Tells the stage how much of it the panel covers at the right. */
+  clearPanel() {
+    const panel = this.panel.element.getBoundingClientRect(), whole = this.root.getBoundingClientRect();
+    const beside = panel.width > 0 && panel.left > 0.4 * whole.width;
+    this.app.stage?.setInset(beside ? whole.right - panel.left : 0);
+  }
+
+  showFrame(frame) {
+    this.clock.textContent = `${frame.time.toFixed(2)} s`;
+    if (!this.seek.hidden && !this.seek.matches(':active')) this.seek.value = frame.time;
+    const said = frame.unconverged ? ['bad', 'last step did not converge']
+      : frame.behind ? ['slow', `${quantity(frame.realTime)} × real time`]
+      : frame.untrained ? ['slow', 'beyond what was trained'] : null;
+    this.badge.hidden = !said;
+    if (said) this.badge.className = `badge ${said[0]}`, this.badge.textContent = said[1];
+  }
+
+  showConnection(connected) {
+    this.connection.hidden = connected || !this.app.ready;
+    this.root.classList.toggle('offline', !connected);
+  }
+
+  /** @param {string|null} stage  what is being done, or null when it is done */
+  showProgress(stage, share) {
+    this.progress.hidden = stage === null;
+    if (stage === null) return;
+    this.progress.querySelector('h2').textContent = 'Reducing the object';
+    this.progress.querySelector('p').textContent = stage;
+    this.progress.querySelector('progress').value = share;
+  }
+
+  toggleHelp() {
+    if (this.help.open) this.help.close();
+    else this.help.showModal();
+  }
+
+  #record() {
+    const {recorder} = this.app;
+    if (recorder.recording) recorder.stop();
+    else recorder.start();
+    this.record.setAttribute('aria-pressed', String(recorder.recording));
+    this.toasts.say(recorder.recording ? 'Recording: export as .glb or .html afterwards'
+      : `${recorder.motion().times.at(-1)?.toFixed(1) ?? 0} s recorded: see Export`);
+  }
+}

@@ -1,0 +1,100 @@
+import {element} from './widgets.js';
+import {quantity} from './quantity.js';
+
+const SPAN = 12;        // seconds that a plot shows
+const REDRAW = 100;     // milliseconds between pictures of a plot
+
+/** What is plotted: each line is a function of frame and page, with the name of its colour. */
+const PLOTS = [
+  {title: 'steps', unit: '/s', lines: [['steps', (f) => f.stepsPerSecond]], text: (f) => `${quantity(f.stepsPerSecond)} /s`},
+  {title: 'pictures', unit: '/s', lines: [['pictures', (f, page) => page.pictures]], text: (f, page) => `${page.pictures.toFixed(0)} /s`},
+  {title: 'a step', lines: [['time', (f) => f.microseconds]], text: (f) => quantity(1e-6 * f.microseconds, 's')},
+  {title: 'iterations', lines: [['iterations', (f) => f.iterations]], text: (f) => String(f.iterations)},
+  {
+    title: 'energy', wide: true, legend: true,
+    lines: [['kinetic', (f) => f.kinetic], ['elastic', (f) => f.elastic], ['potential', (f) => f.potential],
+      ['total', (f) => f.kinetic + f.elastic + f.potential]],
+    text: (f) => quantity(f.kinetic + f.elastic + f.potential, 'J'),
+  },
+  {title: 'residual', log: true, lines: [['residual', (f) => f.residual]], text: (f) => f.residual.toExponential(1)},
+  {title: 'error, estimated', needsIndicator: true, lines: [['error', (f) => 100 * f.estimate]],
+    text: (f) => (Number.isNaN(f.estimate) ? '–' : `${(100 * f.estimate).toPrecision(2)} %`)},
+];
+
+/** Live plots of the last seconds. */
+export class Plots {
+  constructor() {
+    this.element = element('section', {class: 'plots', 'aria-label': 'Live plots'});
+    this.page = {pictures: 0};
+    this.drawnAt = 0;
+  }
+
+  setModel({about}) {
+    this.plots = PLOTS.filter((plot) => !plot.needsIndicator || about.indicator).map((plot) => new Plot(plot));
+    this.element.replaceChildren(...this.plots.map((plot) => plot.element));
+  }
+
+  take(frame) {
+    const now = performance.now() / 1000;
+    for (const plot of this.plots) plot.take(now, frame, this.page);
+    this.frame = frame;
+  }
+
+  /** Called after each picture; it draws a few times a second. */
+  tick(time) {
+    this.pictureTimes = (this.pictureTimes ?? []).filter((t) => t > time - 1000);
+    this.pictureTimes.push(time);
+    this.page.pictures = this.pictureTimes.length;
+    if (time - this.drawnAt < REDRAW || !this.frame || this.element.offsetParent === null) return;
+    this.drawnAt = time;
+    const style = getComputedStyle(this.element);
+    for (const plot of this.plots) plot.draw(performance.now() / 1000, this.frame, this.page, style);
+  }
+}
+
+class Plot {
+  constructor(plot) {
+    this.plot = plot;
+    this.points = [];
+    this.value = element('output');
+    this.canvas = element('canvas', {'aria-hidden': 'true'});
+    const keys = plot.legend
+      ? element('span', {class: 'keys'}, ...plot.lines.map(([name]) => element('i', {style: `--colour: var(--plot-${name})`}, name)))
+      : null;
+    this.element = element('figure', {class: plot.wide ? 'plot wide' : 'plot'},
+      element('figcaption', {}, element('span', {}, plot.title), keys, this.value), this.canvas);
+  }
+
+  take(now, frame, page) {
+    this.points.push([now, ...this.plot.lines.map(([, of]) => of(frame, page))]);
+    while (this.points[0][0] < now - SPAN) this.points.shift();
+  }
+
+  draw(now, frame, page, style) {
+    this.value.textContent = this.plot.text(frame, page);
+    const {canvas, points, plot} = this;
+    const ratio = window.devicePixelRatio, width = canvas.clientWidth, height = canvas.clientHeight;
+    if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio), canvas.height = Math.round(height * ratio);
+    const context = canvas.getContext('2d');
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, width, height);
+    const scaled = (v) => (plot.log ? Math.log10(Math.max(v, 1e-16)) : v);
+    const all = points.flatMap(([, ...values]) => values.map(scaled)).filter(Number.isFinite);
+    if (all.length === 0) return;
+    let low = Math.min(...all), high = Math.max(...all);
+    if (!plot.log) low = Math.min(0, low);
+    if (high - low < 1e-12 * Math.abs(high) || high === low) high = low + (Math.abs(low) || 1);
+    const y = (v) => height - 2 - (height - 4) * (scaled(v) - low) / (high - low);
+    context.lineJoin = 'round';
+    plot.lines.forEach(([name], line) => {
+      context.strokeStyle = style.getPropertyValue(`--plot-${name}`);
+      context.lineWidth = name === 'total' ? 1 : 1.5;
+      context.beginPath();
+      for (const point of points) {
+        if (!Number.isFinite(point[line + 1])) continue;
+        context.lineTo(width * (1 - (now - point[0]) / SPAN), y(point[line + 1]));
+      }
+      context.stroke();
+    });
+  }
+}

@@ -1,0 +1,189 @@
+import {
+  BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, GLSL3, LineSegments, Mesh, RawShaderMaterial, Scene,
+} from 'three';
+import {edgesOf} from '../geometry/rings.js';
+import {colourTexture} from './colour_maps.js';
+import {PRECISION} from './pixel_pass.js';
+import {TEXEL_OF_NODE} from './node_grid.js';
+import {SHADING, shadowBy} from './shading.js';
+
+/** What the surface's colour says. */
+export const COLOURS = {
+  plain: 0,
+  displacement: 1,  // |x − X| [m]
+  stretch: 2,       // √ area over area at rest, less 1
+};
+
+/** The surface as it is drawn: its vertices are texels that a Deformer fills. */
+export class Body {
+  /**
+   * @param {import('./deformer.js').Deformer} deformer
+   * @param {object} light   uniforms of the light, the shadows and the sky
+   */
+  constructor(deformer, light) {
+    this.deformer = deformer;
+    const {model} = deformer.shape;
+    this.tint = new BufferAttribute(new Uint8Array(4 * model.about.nodes), 4, true);
+    this.geometry = new BufferGeometry();
+    this.geometry.setIndex(new BufferAttribute(model.triangles, 1));
+    this.geometry.setAttribute('tint', this.tint);
+    const side = model.about.solid ? FrontSide : DoubleSide;
+    const places = {
+      columns: {value: deformer.grid.columns},
+      positions: {value: null}, normals: {value: null}, rest: {value: deformer.rest},
+    };
+    this.uniforms = {
+      ...places, ...light,
+      colours: {value: COLOURS.plain}, range: {value: 1}, colour_map: {value: colourTexture()},
+      albedo: {value: new Color()}, ghost: {value: 0}, sheet: {value: model.about.solid ? 0 : 1},
+    };
+    this.material = new RawShaderMaterial({
+      glslVersion: GLSL3, side, uniforms: this.uniforms,
+      vertexShader: PRECISION + VERTEX, fragmentShader: PRECISION + FRAGMENT,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    });
+    this.mesh = new Mesh(this.geometry, this.material);
+    this.mesh.frustumCulled = false;
+
+    this.lineColour = {value: new Color()};
+    this.lineMaterial = new RawShaderMaterial({
+      glslVersion: GLSL3, uniforms: {...places, colour: this.lineColour}, transparent: true,
+      vertexShader: PRECISION + PLAIN_VERTEX, fragmentShader: PRECISION + LINE_FRAGMENT,
+    });
+    this.casterMaterial = new RawShaderMaterial({
+      glslVersion: GLSL3, side, uniforms: places, colorWrite: false,
+      vertexShader: PRECISION + PLAIN_VERTEX, fragmentShader: PRECISION + 'void main() {}',
+    });
+    const caster = new Mesh(this.geometry, this.casterMaterial);
+    caster.frustumCulled = false;
+    this.casters = new Scene().add(caster);
+
+    // Of a ghost only the nearest layer is seen: the depths of this veil hide those behind.
+    this.veilMaterial = this.casterMaterial.clone();
+    Object.assign(this.veilMaterial, {uniforms: places, transparent: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
+    this.veil = new Mesh(this.geometry, this.veilMaterial);
+    this.veil.frustumCulled = false;
+    this.veil.renderOrder = 1;
+    this.veil.visible = false;
+    this.mesh.renderOrder = 2;
+    this.mesh.add(this.veil);
+  }
+
+  update() {
+    this.deformer.update();
+    this.uniforms.positions.value = this.deformer.positions;
+    this.uniforms.normals.value = this.deformer.normals;
+  }
+
+  /** @param {keyof COLOURS} colours  @param {number} range  value of the last colour */
+  show(colours, range) {
+    this.uniforms.colours.value = COLOURS[colours];
+    this.uniforms.range.value = range;
+  }
+
+  /** Lets what is inside shimmer through. */
+  set ghost(on) {
+    this.uniforms.ghost.value = on ? 1 : 0;
+    this.material.transparent = on;
+    this.veil.visible = on;
+  }
+
+  set wireframe(on) {
+    if (on && !this.lines) {
+      const geometry = new BufferGeometry();
+      geometry.setIndex(new BufferAttribute(edgesOf(this.deformer.shape.rings), 1));
+      geometry.setAttribute('tint', this.tint);
+      this.lines = new LineSegments(geometry, this.lineMaterial);
+      this.lines.frustumCulled = false;
+      this.mesh.add(this.lines);
+    }
+    if (this.lines) this.lines.visible = on;
+  }
+
+  /** @param {Iterable<[Iterable<number>, number[]]>} regions  nodes, and red, green, blue and share, each 0 … 255 */
+  paint(regions) {
+    this.tint.array.fill(0);
+    for (const [nodes, colour] of regions) for (const v of nodes) this.tint.array.set(colour, 4 * v);
+    this.tint.needsUpdate = true;
+  }
+
+  dispose() {
+    this.geometry.dispose();
+    this.lines?.geometry.dispose();
+    this.uniforms.colour_map.value.dispose();
+    for (const material of [this.material, this.lineMaterial, this.casterMaterial, this.veilMaterial]) material.dispose();
+  }
+}
+
+const PLAIN_VERTEX = `
+  uniform mat4 modelViewMatrix, projectionMatrix;
+  uniform sampler2D positions;
+  ${TEXEL_OF_NODE}
+  void main() {
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(texelFetch(positions, texel_of(gl_VertexID), 0).xyz, 1);
+  }
+`;
+
+const LINE_FRAGMENT = `
+  uniform vec3 colour;
+  out vec4 pixel;
+  void main() { pixel = vec4(colour, 0.35); }
+`;
+
+const VERTEX = `
+  uniform mat4 modelViewMatrix, projectionMatrix;
+  uniform sampler2D positions, normals, rest, sky_light;
+  uniform int colours;
+  uniform float range;
+  ${TEXEL_OF_NODE}
+  in vec4 tint;
+  out vec3 at, normal;
+  out vec4 painted;
+  out float sky, share;
+
+  void main() {
+    ivec2 texel = texel_of(gl_VertexID);
+    at = texelFetch(positions, texel, 0).xyz;
+    vec4 n = texelFetch(normals, texel, 0);
+    normal = n.xyz;
+    sky = texelFetch(sky_light, texel, 0).r;
+    painted = vec4(tint.rgb * tint.rgb * tint.a, tint.a);
+    share = colours == ${COLOURS.displacement} ? distance(at, texelFetch(rest, texel, 0).xyz) / range
+          : colours == ${COLOURS.stretch} ? 0.5 + 0.5 * n.w / range : 0.0;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1);
+  }
+`;
+
+const FRAGMENT = `
+  uniform vec3 cameraPosition, albedo;
+  uniform sampler2D colour_map;
+  uniform int colours;
+  uniform float ghost, sheet;
+  ${SHADING}
+  ${shadowBy(8)}
+  in vec3 at, normal;
+  in vec4 painted;
+  in float sky, share;
+  out vec4 pixel;
+
+  void main() {
+    vec3 to_eye = normalize(cameraPosition - at);
+    vec3 n = normalize(normal);
+    // A normal that turns away belongs to the other side of a sheet, or was smoothed around the edge of what is seen.
+    float facing = dot(n, to_eye);
+    if (facing < -0.25 || (sheet > 0.5 && !gl_FrontFacing && facing < 0.0)) n = -n;
+    facing = dot(n, to_eye);
+    if (facing < 0.0) n = normalize(n - facing * to_eye);
+
+    vec3 colour = albedo;
+    if (colours != 0) {
+      vec3 root = texture(colour_map, vec2((share * 255.0 + 0.5) / 256.0, colours == ${COLOURS.stretch} ? 0.75 : 0.25)).rgb;
+      colour = root * root;
+    }
+    colour = colour * (1.0 - painted.a) + painted.rgb;
+    float cosine = dot(n, key_towards);
+    float key = cosine > 0.0 ? cosine * unshadowed(at + 0.012 * scene_radius * n, 0.008) : 0.0;
+    float alpha = ghost > 0.5 ? mix(0.30, 0.95, pow(1.0 - abs(dot(n, to_eye)), 1.5)) : 1.0;
+    pixel = vec4(to_screen(shade(colour, at, n, to_eye, sky, key)), alpha);
+  }
+`;

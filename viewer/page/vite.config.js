@@ -1,0 +1,14 @@
+import {defineConfig} from 'vite';
+
+export default defineConfig({
+  base: './',
+  build: {
+    target: 'es2022',
+    sourcemap: false,
+    modulePreload: false,
+    // One script and one style sheet, which a standalone page takes into itself.
+    cssCodeSplit: false,
+    rolldownOptions: {output: {codeSplitting: false, entryFileNames: 'page.js', assetFileNames: 'page[extname]'}},
+    chunkSizeWarningLimit: 1200,
+  },
+});
