@@ -23,7 +23,7 @@ beforeEach(async () => {
   await page.evaluate(() => {
     supple.release();
     supple.ask({do: 'mode', mode: 'simulate'});
-    supple.ask({do: 'set', gravity: [0, 0, 0], speed: 1, floor: null});
+    supple.ask({do: 'set', gravity: [0, 0, 0], speed: 1, floor: null, damping: {mass: 0, stiffness: 0}});
     supple.ask({do: 'fix', nodes: []});
     supple.ask({do: 'pause'});
     supple.ask({do: 'reset'});
@@ -148,6 +148,7 @@ test('a dragged point comes to where it is pulled, and is let go', async () => {
   const node = await freeNode();
   await page.evaluate(() => {
     supple.set({pullStiffness: 100});
+    supple.ask({do: 'set', damping: {mass: 10, stiffness: 0.02}});
     supple.ask({do: 'play'});
   });
   const start = await page.evaluate((v) => supple.project(v), node);

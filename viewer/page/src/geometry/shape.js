@@ -72,20 +72,21 @@ export class Shape {
     return {centre, radius: Math.hypot(...low.map((l, axis) => high[axis] - l)) / 2, displacement: Math.sqrt(displacement)};
   }
 
-  /** Normals weighted by area, of unit length; zero for nodes without a triangle. */
+  /** Normals weighted by area: 1 long where the surface is flat, shorter on a crease, 0 for nodes without a triangle. */
   normals() {
     const x = this.positions(), {starts, pairs} = this.rings;
     const normals = new Float32Array(x.length);
     for (let v = 0; v + 1 < starts.length; ++v) {
-      let nx = 0, ny = 0, nz = 0;
+      let nx = 0, ny = 0, nz = 0, area = 0;
       for (let k = starts[v]; k < starts[v + 1]; ++k) {
         const b = 3 * pairs[2 * k], c = 3 * pairs[2 * k + 1], a = 3 * v;
         const bx = x[b] - x[a], by = x[b + 1] - x[a + 1], bz = x[b + 2] - x[a + 2];
         const cx = x[c] - x[a], cy = x[c + 1] - x[a + 1], cz = x[c + 2] - x[a + 2];
-        nx += by * cz - bz * cy, ny += bz * cx - bx * cz, nz += bx * cy - by * cx;
+        const tx = by * cz - bz * cy, ty = bz * cx - bx * cz, tz = bx * cy - by * cx;
+        nx += tx, ny += ty, nz += tz;
+        area += Math.hypot(tx, ty, tz);
       }
-      const length = Math.hypot(nx, ny, nz) || 1;
-      normals[3 * v] = nx / length, normals[3 * v + 1] = ny / length, normals[3 * v + 2] = nz / length;
+      if (area > 0) normals[3 * v] = nx / area, normals[3 * v + 1] = ny / area, normals[3 * v + 2] = nz / area;
     }
     return normals;
   }

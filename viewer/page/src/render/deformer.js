@@ -15,7 +15,7 @@ const COLUMNS_OF_PAIRS = 2048;          // every WebGL 2 has textures so wide
  * folder counts bytes and fetches.
  *
  * `positions` has the area around a node at rest as its fourth number, `normals` by what the surface is stretched there
- * (√ area over area at rest, less 1).
+ * (√ area over area at rest, less 1). Normals are 1 long where the surface is flat, and shorter the sharper its crease.
  */
 export class Deformer {
   /**
@@ -225,7 +225,6 @@ const NORMALS = `
       sum += turn;
       area += length(turn);
     }
-    float size = length(sum);
-    normal = vec4(size > 0.0 ? sum / size : vec3(0), at.w > 0.0 ? sqrt(area / at.w) - 1.0 : 0.0);
+    normal = vec4(area > 0.0 ? sum / area : vec3(0), at.w > 0.0 ? sqrt(area / at.w) - 1.0 : 0.0);
   }
 `;

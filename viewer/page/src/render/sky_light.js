@@ -91,6 +91,7 @@ const RECEIVE = `
   void main() {
     ivec2 place = ivec2(gl_FragCoord.xy);
     vec3 n = texelFetch(normals, place, 0).xyz;
+    n /= max(length(n), 1e-6);
     vec3 at = texelFetch(positions, place, 0).xyz + bias * n;
     vec3 p = (to_shadow * vec4(at, 1)).xyz * 0.5 + 0.5;
     bool outside = any(lessThan(p.xy, vec2(0))) || any(greaterThan(p.xy, vec2(1))) || p.z > 1.0;
