@@ -247,7 +247,7 @@ test('a painted region is held in place and freed', async () => {
   });
   await until(() => supple.frame.steps === 60);
   const moved = await page.evaluate(() => {
-    const {about, state} = supple, rest = window.restPositions;
+    const {about, state} = supple;
     return {held: state.fixed[0], at: supple.position(state.fixed[0]), diagonal: about.diagonal};
   });
   await page.getByRole('button', {name: 'Free all'}).click();
@@ -392,7 +392,8 @@ test('the page finds a server again that was started anew, and keeps its camera'
   await until(() => supple.connected && supple.frame.steps === 0 && !supple.state.playing);
   await page.getByText('The server is gone').waitFor({state: 'hidden'});
   const again = await page.evaluate(() => supple.camera);
-  assert.ok(distance(again.position, camera.position) < 1e-6);
+  // What is left of the swing when it is too small to be drawn may still come.
+  assert.ok(distance(again.position, camera.position) < 0.01 * await page.evaluate(() => supple.about.diagonal));
   await page.keyboard.press('Space');
   await until(() => supple.frame.playing);
   noErrors();

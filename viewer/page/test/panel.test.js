@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import {count, quantity} from '../src/panel/quantity.js';
+import {count, percent, quantity} from '../src/panel/quantity.js';
 import {cssColour, mapColour} from '../src/render/colour_maps.js';
 import {upAxisOf} from '../src/render/up_axis.js';
 
@@ -10,6 +10,8 @@ test('quantities have three digits and a prefix', () => {
   assert.equal(quantity(-4.2e-6, 'J'), '-4.20 µJ');
   assert.equal(quantity(1e-200, 'J'), '0 J');
   assert.equal(quantity(NaN, 'J'), '–');
+  assert.equal(percent(0.0219), '2.2 %');
+  assert.equal(percent(1.234), '123 %');
   assert.equal(count(1234567).replaceAll('\u202f', ' '), '1 234 567');
 });
 

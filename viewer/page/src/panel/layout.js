@@ -1,4 +1,4 @@
-import {count, quantity} from './quantity.js';
+import {count, percent, quantity} from './quantity.js';
 import {helpDialog} from './help.js';
 import {ICONS} from './icons.js';
 import {Legend} from './legend.js';
@@ -65,7 +65,7 @@ export class Layout {
     document.title = `${about.name} – Supple`;
     this.name.textContent = about.name;
     const of = about.solid ? 'solid' : 'shell';
-    const error = about.full_error > 0 ? ` · ${(100 * about.full_error).toPrecision(2)} % off the full object` : '';
+    const error = about.full_error > 0 ? ` · ${percent(about.full_error)} off the full object` : '';
     this.facts.replaceChildren(`${of} of ${count(about.surface_nodes)} vertices`, element('br'),
       `${about.dimension} unknowns · ${about.components} components${error}`);
     this.plots.setModel(model);

@@ -1,5 +1,5 @@
 import {element} from './widgets.js';
-import {quantity} from './quantity.js';
+import {percent, quantity} from './quantity.js';
 
 const SPAN = 12;        // seconds that a plot shows
 const REDRAW = 100;     // milliseconds between pictures of a plot
@@ -18,13 +18,13 @@ const PLOTS = [
   },
   {title: 'residual', log: true, lines: [['residual', (f) => f.residual]], text: (f) => f.residual.toExponential(1)},
   {title: 'error, estimated', needsIndicator: true, lines: [['error', (f) => 100 * f.estimate]],
-    text: (f) => (Number.isNaN(f.estimate) ? '–' : `${(100 * f.estimate).toPrecision(2)} %`)},
+    text: (f) => percent(f.estimate)},
 ];
 
 /** Live plots of the last seconds. */
 export class Plots {
   constructor() {
-    this.element = element('section', {class: 'plots', 'aria-label': 'Live plots'});
+    this.element = element('section', {class: 'plots card', 'aria-label': 'Live plots'});
     this.page = {pictures: 0};
     this.drawnAt = 0;
   }

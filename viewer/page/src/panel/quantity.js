@@ -12,3 +12,10 @@ export function quantity(value, unit = '') {
 export function count(value) {
   return String(value).replace(/\B(?=(\d{3})+$)/g, '\u202f');
 }
+
+/** A share as a percentage of two digits or more. */
+export function percent(share) {
+  if (!Number.isFinite(share)) return '–';
+  const value = 100 * share;
+  return `${Math.abs(value) < 99.5 ? value.toPrecision(2) : count(Math.round(value))} %`;
+}

@@ -171,7 +171,7 @@ const FRAGMENT = `
     // Creases stay sharp: there the triangle's own normal counts.
     vec3 face = cross(dFdx(at), dFdy(at));
     face *= (dot(face, normal) < 0.0 ? -1.0 : 1.0) * inversesqrt(max(dot(face, face), 1e-30));
-    vec3 n = normalize(mix(face, normal, smoothstep(0.8, 0.96, length(normal))));
+    vec3 n = normalize(mix(face, normal, smoothstep(0.68, 0.84, length(normal))));
     // A normal that turns away belongs to the other side of a sheet, or was smoothed around the edge of what is seen.
     float facing = dot(n, to_eye);
     if (facing < -0.25 || (sheet > 0.5 && !gl_FrontFacing && facing < 0.0)) n = -n;

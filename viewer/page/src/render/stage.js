@@ -123,7 +123,7 @@ export class Stage {
           .multiplyScalar(Math.cos(rad(ELEVATION))).addScaledVector(this.up, Math.sin(rad(ELEVATION)));
     this.framed = true;
     const narrow = Math.min(1, (this.parent.clientWidth - this.inset) / this.parent.clientHeight);
-    const distance = 0.92 * radius / Math.sin(rad(FIELD_OF_VIEW / 2)) / narrow;
+    const distance = radius / Math.sin(rad(FIELD_OF_VIEW / 2)) / narrow;
     this.controls.target.copy(centreOfView);
     this.camera.position.copy(centreOfView).addScaledVector(away, distance);
     this.controls.minDistance = 0.02 * radius;
@@ -268,10 +268,7 @@ function backdrop() {
       in float height;
       out vec4 pixel;
       void main() {
-        // A little noise hides the steps of a slow gradient.
-        float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.5;
-        vec3 c = mix(bottom, top, smoothstep(0.0, 1.0, height));
-        pixel = vec4(pow(c, vec3(1.0 / 2.2)) + noise / 255.0, 1);
+        pixel = vec4(pow(mix(bottom, top, smoothstep(0.0, 1.0, height)), vec3(1.0 / 2.2)), 1);
       }`,
   }));
   mesh.renderOrder = -2;

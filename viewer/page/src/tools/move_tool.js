@@ -13,6 +13,8 @@ export class MoveTool {
     stage.scene.add(this.anchor);
     this.gizmo = new TransformControls(stage.camera, stage.canvas);
     this.gizmo.setSize(0.85);
+    this.gizmo.setColors('#d9584c', '#3f9d68', '#4a7fd6', '#f0a63c');
+    this.gizmo.showE = false;  // a fourth circle, around the eye's own axis
     stage.scene.add(this.gizmo.getHelper());
     this.gizmo.addEventListener('change', () => stage.invalidate());
     this.gizmo.addEventListener('dragging-changed', ({value}) => {
