@@ -170,14 +170,14 @@ TEST(EditSessionTest, OneNodeOfAFreeObjectIsAHandle) {
   EXPECT_LT(session.elastic_energy(), 1e-6);  // it goes along
 }
 
-TEST(EditSessionTest, DISABLED_TellsWhenTheSubspaceCannotFollow) {
+TEST(EditSessionTest, TellsWhenTheSubspaceCannotFollow) {
   const auto model = clamped_view_model();
   EditSession session(model);
   const Index id = session.add(region(
       *model, [](double x) { return 0.45 < x && x < 0.55; }, "waist"));
   settle(session);
   EXPECT_LT(session.held(), held_over_diagonal_at_most);
-  session.move(id, RigidMotion::turn({1, 0, 0}, 1.5, model->rest().colwise().mean().transpose()));
+  session.move(id, RigidMotion::turn({1, 0, 0}, 3, model->rest().colwise().mean().transpose()));
   settle(session);
   EXPECT_GT(session.held(), held_over_diagonal_at_most);
 }

@@ -19,7 +19,7 @@ struct Timed {
   void operator()(const Request& request) { session.apply(1, request); }
 };
 
-TEST(PacemakerTest, DISABLED_KeepsUpAndSaysWhenItCannot) {
+TEST(PacemakerTest, KeepsUpAndSaysWhenItCannot) {
   Pacemaker pace;
   int steps = 0;
   for (int k = 0; k < 60; ++k)
@@ -36,10 +36,10 @@ TEST(PacemakerTest, DISABLED_KeepsUpAndSaysWhenItCannot) {
   EXPECT_TRUE(pace.falls_behind());
   for (steps = 0; pace.is_due(0.005); ++steps) pace.stepped(0.005);
   EXPECT_EQ(steps, 50);  // the rest is lost
-  pace.pass(0.6, 0.1);
-  pace.pass(0.6, 0.1);
+  for (int k = 0; k < 12; ++k)
+    for (pace.pass(0.1, 0.1); pace.is_due(0.005);) pace.stepped(0.005);
   EXPECT_FALSE(pace.falls_behind());
-  EXPECT_DOUBLE_EQ(pace.until_due(1, 0.1), (1 - 0.025) / 0.1);
+  EXPECT_NEAR(pace.until_due(1, 0.1), 10, 1e-6);
 }
 
 TEST(ViewSessionTest, BeginsPausedAndRunsInRealTimeWhenItPlays) {
@@ -145,13 +145,13 @@ TEST(ViewSessionTest, EditingHasAShapeOfItsOwn) {
   EXPECT_THROW(timed(request::MakeHandle{{timed.model->geometry.num_nodes()}}), std::invalid_argument);
 }
 
-TEST(ViewSessionTest, DISABLED_WarnsOnceWhereTheSubspaceCannotFollow) {
+TEST(ViewSessionTest, WarnsOnceWhereTheSubspaceCannotFollow) {
   Timed timed;
   timed(request::SetMode{ViewMode::Edit});
   timed(request::MakeHandle{surface_nodes_where(*timed.model, [](double x) { return 0.45 < x && x < 0.55; })});
   const Index id = timed.session.edit().handles().front().id;
   const Point centre = timed.model->rest().colwise().mean().transpose();
-  for (const double angle : {1.4, 1.45, 1.5}) {
+  for (const double angle : {2.9, 2.95, 3.0}) {
     timed(request::MoveHandle{id, RigidMotion::turn({1, 0, 0}, angle, centre)});
     timed.session.advance(0);
   }
