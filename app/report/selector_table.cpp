@@ -231,7 +231,7 @@ std::vector<std::pair<std::string, std::string>> draw_selector_plots(const std::
   Axis sizes{.label = "components s", .scale = Scale::Log};
   for (const SelectorRun& run : runs) sizes.ticks.push_back(static_cast<double>(run.size));
   std::ranges::sort(sizes.ticks);
-  sizes.ticks.erase(std::ranges::unique(sizes.ticks).begin(), sizes.ticks.end());
+  sizes.ticks.erase(std::unique(sizes.ticks.begin(), sizes.ticks.end()), sizes.ticks.end());
   const Axis errors{.label = measured, .scale = Scale::Log};
   draw("error-size.svg", "Error against size: medians over seeds.",
        {.x = sizes, .y = errors, .series = lines(runs, size, error)});

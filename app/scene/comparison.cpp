@@ -1,5 +1,5 @@
-#include <app/scene/comparison.hpp>
 #include <app/scene/coloured_picture.hpp>
+#include <app/scene/comparison.hpp>
 
 #include <cmath>
 #include <limits>

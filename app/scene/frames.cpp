@@ -1,6 +1,6 @@
 #include <app/report/exit_guard.hpp>
-#include <app/scene/frames.hpp>
 #include <app/scene/coloured_picture.hpp>
+#include <app/scene/frames.hpp>
 #include <core/stopwatch.hpp>
 #include <io/frames/vtu_writer.hpp>
 

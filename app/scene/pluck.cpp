@@ -1,6 +1,6 @@
 #include <app/report/terminal.hpp>
-#include <app/scene/scene.hpp>
 #include <app/scene/coloured_picture.hpp>
+#include <app/scene/scene.hpp>
 #include <core/check.hpp>
 
 #include <Eigen/Cholesky>

@@ -1,11 +1,11 @@
 #include <app/report/terminal.hpp>
-#include <app/scene/scene.hpp>
-#include <numerics/optimize/solver_names.hpp>
 #include <app/scene/coloured_picture.hpp>
+#include <app/scene/scene.hpp>
 #include <core/check.hpp>
 #include <io/mesh/node_sets.hpp>
 #include <io/table/csv.hpp>
 #include <io/text/json_fields.hpp>
+#include <numerics/optimize/solver_names.hpp>
 #include <physics/load/outside_force_library.hpp>
 #include <physics/time/integrator_library.hpp>
 

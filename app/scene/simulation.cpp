@@ -1,7 +1,7 @@
 #include <app/report/terminal.hpp>
 #include <app/scene/simulation.hpp>
-#include <numerics/optimize/solver_names.hpp>
 #include <core/stopwatch.hpp>
+#include <numerics/optimize/solver_names.hpp>
 #include <physics/body/body_system.hpp>
 #include <physics/time/backward_difference.hpp>
 #include <physics/time/integrator_library.hpp>

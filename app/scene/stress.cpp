@@ -1,5 +1,5 @@
-#include <app/scene/stress.hpp>
 #include <app/scene/coloured_picture.hpp>
+#include <app/scene/stress.hpp>
 
 #include <Eigen/Geometry>
 

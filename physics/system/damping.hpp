@@ -11,7 +11,6 @@ struct RayleighDamping {
   double beta = 0;   ///< [s], damps fast ones
 
   bool acts() const { return alpha != 0 || beta != 0; }
-  bool operator==(const RayleighDamping&) const = default;
 };
 
 /// D v of a system [N].

@@ -348,6 +348,10 @@ ReducedModel load_model(const std::filesystem::path& path) {
   const Matrix& K = model.rest_stiffness;
   if ((K - K.transpose()).norm() > 1e-8 * K.norm()) throw in.fail("rest_stiffness is not symmetric");
   if (file.contains("indicator.indices")) model.indicator = read_indicator(in, model);
+  const AnySystem<Matrix> system = model.system();
+  const Vector rest = Vector::Zero(model.dim());
+  if (!system.force(rest).allFinite() || !std::isfinite(system.energy(rest)))
+    throw in.fail("forces at rest are not finite: places, parameters, weights or the basis are out of all proportion");
   return model;
 }
 

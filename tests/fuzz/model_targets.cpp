@@ -1,5 +1,4 @@
 #include <app/commands/problem_options.hpp>
-#include <viewer/scene/edit_scene_file.hpp>
 #include <app/scene/pose_file.hpp>
 #include <app/scene/scene.hpp>
 #include <app/scene/trajectory.hpp>
@@ -8,6 +7,7 @@
 #include <tests/fuzz/fuzz_target.hpp>
 #include <tests/fuzz/small_models.hpp>
 #include <tests/fuzz/tensor_edits.hpp>
+#include <viewer/scene/edit_scene_file.hpp>
 
 #include <algorithm>
 #include <unistd.h>

@@ -25,6 +25,11 @@ StepOptions step_options(const ViewSettings& settings) {
   return {.damping = settings.damping, .solver = Bfgs{}};
 }
 
+/// Whether the object answers the same forces in the same way.
+bool move_alike(const ViewSettings& a, const ViewSettings& b) {
+  return a.stiffness == b.stiffness && a.damping.alpha == b.damping.alpha && a.damping.beta == b.damping.beta;
+}
+
 }  // namespace
 
 double default_pull_stiffness(const ViewModel& model) {
@@ -63,13 +68,13 @@ void SimulationSession::set(const ViewSettings& settings) {
   const auto floor = settings.floor == settings_.floor ? floor_
                      : settings.floor                  ? floor_term(*settings.floor)
                                                        : nullptr;
-  const bool same_motion = settings.stiffness == settings_.stiffness && settings.damping == settings_.damping;
+  const bool alike = move_alike(settings, settings_);
   settings_ = settings;
   floor_ = floor;
   system_ = scaled(model_->system, settings.stiffness);
   project_loads();
   rebuild_integrator();
-  if (!same_motion) restart_estimate();
+  if (!alike) restart_estimate();
 }
 
 void SimulationSession::pull(int client, const Pull& pull) {

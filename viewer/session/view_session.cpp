@@ -58,11 +58,11 @@ void ViewSession::apply(int client, const Request& request) {
 }
 
 void ViewSession::apply_one(int, const request::Play&) {
-  playing() = mode_ != ViewMode::Edit;
+  set_playing(mode_ != ViewMode::Edit);
   steps_to_take_ = 0;
 }
 void ViewSession::apply_one(int, const request::Pause&) {
-  playing() = false;
+  set_playing(false);
   steps_to_take_ = 0;
 }
 void ViewSession::apply_one(int, const request::Reset&) {
@@ -77,7 +77,7 @@ void ViewSession::apply_one(int, const request::Reset&) {
 void ViewSession::apply_one(int, const request::Step& step) {
   require(step.count >= 1 && step.count <= 1000,
           "count is " + std::to_string(step.count) + ", expected 1 to 1000 steps");
-  playing() = false;
+  set_playing(false);
   if (mode_ == ViewMode::Simulate) steps_to_take_ = std::min<Index>(steps_to_take_ + step.count, 1000);
   if (mode_ == ViewMode::Modes) shown_mode_.time += static_cast<double>(step.count) * slowest_frame;
 }
@@ -183,7 +183,7 @@ void ViewSession::step() {
   if (!outcome.failure.empty()) {
     warnings_.push_back("the simulation pauses at " + std::to_string(simulation_.state().time) +
                         " s: " + outcome.failure);
-    playing() = false;
+    set_playing(false);
     steps_to_take_ = 0;
     ++changes_;
   } else if (simulation_.makes_energy() && !told_of_energy_) {

@@ -46,7 +46,7 @@ class ViewSession {
   /// \param clock  of the budget of an advance(); empty: the machine's.
   explicit ViewSession(std::shared_ptr<const ViewModel> model, Clock clock = {});
 
-  /// A client comes, by a number that nobody has. 	hrows std::invalid_argument if somebody has it.
+  /// A client comes, by a number that nobody has. \throws std::invalid_argument if somebody has it.
   void join(int client);
   void leave(int client);  ///< who leaves lets go
   Index num_clients() const { return static_cast<Index>(clients_.size()); }
@@ -76,7 +76,7 @@ class ViewSession {
   const ViewModel& model() const { return *model_; }
 
  private:
-  bool& playing() { return playing_[static_cast<std::size_t>(mode_)]; }
+  void set_playing(bool playing) { playing_[static_cast<std::size_t>(mode_)] = playing; }
   void advance_simulation(double wall, double end);
   void advance_edit(double end);
   void step();
