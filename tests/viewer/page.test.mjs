@@ -42,9 +42,11 @@ const noErrors = () => assert.deepEqual(page.errors, []);
 const freeNode = () => page.evaluate(() => {
   const {about} = supple, axis = [0, 1, 2].reduce((a, b) => (about.high[b] - about.low[b] > about.high[a] - about.low[a] ? b : a));
   const far = Array.from({length: about.surface_nodes}, (_, v) => v).sort((a, b) => supple.position(b)[axis] - supple.position(a)[axis]);
-  for (const v of far.slice(0, 200)) {
-    const {x, y} = supple.project(v), hit = document.elementFromPoint(x, y)?.tagName === 'CANVAS' && supple.pick(x, y);
-    if (hit && Math.hypot(...hit.point.map((c, k) => c - supple.position(hit.node)[k])) < 0.05 * about.diagonal) return hit.node;
+  const around = [[0, 0], [5, 0], [-5, 0], [0, 5], [0, -5]];  // pixels: no node on the outline
+  for (const v of far) {
+    const {x, y} = supple.project(v);
+    if (document.elementFromPoint(x, y)?.tagName !== 'CANVAS') continue;
+    if (around.every(([h, k]) => supple.pick(x + h, y + k)) && supple.pick(x, y).node === v) return v;
   }
   return null;
 });
@@ -59,15 +61,15 @@ const endNodes = (end) => page.evaluate((high) => {
   });
 }, end);
 
-/** The camera, when it has come to rest. */
-async function restingCamera() {
-  await page.evaluate(() => (window.lastCamera = null));
-  await page.waitForFunction(() => {
-    const now = JSON.stringify(supple.camera), rests = now === window.lastCamera;
-    window.lastCamera = now;
+/** What the page says of something, given as code, when it has stopped changing. */
+async function atRest(code) {
+  await page.evaluate(() => (window.before = null));
+  await page.waitForFunction((what) => {
+    const now = JSON.stringify(eval(what)), rests = now === window.before;
+    window.before = now;
     return rests;
-  }, null, {polling: 300});
-  return page.evaluate(() => supple.camera);
+  }, code, {polling: 300});
+  return page.evaluate(code);
 }
 
 const distance = (a, b) => Math.hypot(...a.map((c, k) => c - b[k]));
@@ -281,7 +283,7 @@ test('two handles edit the shape; undo, redo, save, reload and load', async () =
   await until(() => supple.state.handles.some(({motion}) => motion[3] || motion[7] || motion[11]));
   const diagonal = await page.evaluate(() => supple.about.diagonal);
   await until(([v, from, d]) => Math.hypot(...supple.position(v).map((c, k) => c - from[k])) > 0.03 * d, [node, before, diagonal]);
-  const moved = await page.evaluate(() => JSON.stringify(supple.state.handles.map(({motion}) => motion)));
+  const moved = await atRest('JSON.stringify(supple.state.handles.map(({motion}) => motion))');
   assert.ok(await page.evaluate((v) => supple.state.handles[1].nodes.includes(v), node));
 
   await page.keyboard.press('Control+z');
@@ -384,7 +386,7 @@ test('the page finds a server again that was started anew, and keeps its camera'
   await page.mouse.down();
   await page.mouse.move(370, 160, {steps: 4});
   await page.mouse.up();
-  const camera = await restingCamera();
+  const camera = await atRest('supple.camera');
   const {port} = server, took = await server.stop();
   t.diagnostic(`the server ended within ${took.toFixed(0)} ms`);
   await until(() => !supple.connected);
