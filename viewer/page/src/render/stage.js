@@ -239,9 +239,11 @@ export class Stage {
   /** Shadows move with the object and, since the studio turns with it, with the camera. */
   #castShadows() {
     const {renderer, keyLamp} = this, towards = this.light.uniforms.key_towards.value;
-    if (!this.moved && keyLamp.towards.value.distanceTo(towards) < 1e-4) return;
+    this.shadowsLag ||= this.moved || keyLamp.towards.value.distanceTo(towards) > 1e-4;
     // Without a graphics card those of a moving object lag by a picture.
-    if (this.software && this.moved && this.unsettled > 1 && this.counters.drawn % 2) return;
+    const waits = this.software && this.moved && this.counters.drawn % 2;
+    if (!this.shadowsLag || waits) return;
+    this.shadowsLag = false;
     keyLamp.aim(towards, this.ball);
     keyLamp.look(renderer, this.body.casters);
     this.ground.update(renderer);
