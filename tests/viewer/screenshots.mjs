@@ -56,14 +56,14 @@ function extreme(page, direction) {
 async function pulled(page) {
   const node = await extreme(page, [-1, 0.7, 0.2]), from = await page.evaluate((v) => supple.project(v), node);
   await page.evaluate(() => {
-    supple.set({pullStiffness: 6});
+    supple.set({pullStiffness: 2});
     supple.ask({do: 'set', damping: {mass: 1, stiffness: 0.01}});
     supple.ask({do: 'play'});
   });
   await page.waitForFunction(() => supple.frame.steps > 200);
   await page.mouse.move(from.x, from.y);
   await page.mouse.down();
-  await page.mouse.move(from.x - 30, from.y - 95, {steps: 12});
+  await page.mouse.move(from.x - 30, from.y - 100, {steps: 12});
   await page.waitForTimeout(7000);
   await page.keyboard.press('Space');
   await page.waitForFunction(() => !supple.frame.playing);

@@ -16,7 +16,8 @@ import {BoxTool, BrushTool} from './tools/select_tools.js';
 
 const DEFAULTS = {
   tool: 'pull', colours: 'plain', stretchRange: 0.25, wireframe: false, components: false, regions: true,
-  pullStiffness: 1, brush: 0.05, gizmo: 'translate', amplitude: 0.1, stream: 'coordinates', theme: 'auto', panels: true,
+  pullStiffness: 1, brush: 0.05, gizmo: 'translate', amplitude: 0.1, stream: 'coordinates', theme: 'auto',
+  panels: window.innerWidth > 860,
 };
 
 /** The page: it joins a session to the stage, the tools and the panel. What the session says is the truth. */

@@ -20,6 +20,8 @@ export function exposeHook(app) {
       return {position: app.stage.camera.position.toArray(), target: app.stage.controls.target.toArray()};
     },
 
+    /** All the rest, for the console. */
+    app,
     ask: (message) => session.ask(message),
     choose: (stream) => session.choose(stream),
     set: (options) => app.setOptions(options),

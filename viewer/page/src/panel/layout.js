@@ -53,6 +53,7 @@ export class Layout {
       button('Keys', () => this.toggleHelp(), {icon: ICONS.help, title: 'Keys (?)', kind: 'round'}),
       button('Panels', () => app.setOptions({panels: !app.options.panels}), {icon: ICONS.panel, title: 'Hide or show panels (h)', kind: 'round'}));
     this.root = root;
+    root.classList.add('waiting');
     root.append(this.stage, element('header', {}, this.name, this.facts), ...(live ? [this.modes, this.toolBar] : []), corner,
       this.panel.element, ...(live ? [this.plots.element] : []), this.legend.element, this.transport, this.connection,
       this.toasts.element, this.help, this.progress);
@@ -62,6 +63,7 @@ export class Layout {
 
   setModel(model, session) {
     const {about} = model;
+    this.root.classList.remove('waiting');
     document.title = `${about.name} – Supple`;
     this.name.textContent = about.name;
     const of = about.solid ? 'solid' : 'shell';

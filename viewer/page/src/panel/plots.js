@@ -17,7 +17,7 @@ const PLOTS = [
     text: (f) => quantity(f.kinetic + f.elastic + f.potential, 'J'),
   },
   {title: 'residual', log: true, lines: [['residual', (f) => f.residual]], text: (f) => f.residual.toExponential(1)},
-  {title: 'error, estimated', needsIndicator: true, lines: [['error', (f) => 100 * f.estimate]],
+  {title: 'error', needsIndicator: true, lines: [['error', (f) => 100 * f.estimate]],
     text: (f) => percent(f.estimate)},
 ];
 
@@ -62,7 +62,7 @@ class Plot {
       ? element('span', {class: 'keys'}, ...plot.lines.map(([name]) => element('i', {style: `--colour: var(--plot-${name})`}, name)))
       : null;
     this.element = element('figure', {class: plot.wide ? 'plot wide' : 'plot'},
-      element('figcaption', {}, element('span', {}, plot.title), keys, this.value), this.canvas);
+      element('figcaption', {}, keys ?? element('span', {}, plot.title), this.value), this.canvas);
   }
 
   take(now, frame, page) {

@@ -6,7 +6,7 @@ import {
 import {PixelPass, PRECISION} from './pixel_pass.js';
 import {shadowBy} from './shading.js';
 
-const PLACES = 96, KEY_SIZE = 192;
+const PLACES = 96, KEY_SIZE = 128;
 const REACH = 4;         // half the ground's side over the object's radius
 const STRENGTH = 0.78;   // of shadows
 
@@ -84,7 +84,7 @@ function placesTexture() {
 
 const KEY = `
   uniform vec3 corner, across, along;
-  ${shadowBy(20)}
+  ${shadowBy(16)}
   out vec4 light;
   void main() {
     vec2 share = gl_FragCoord.xy / ${KEY_SIZE}.0;

@@ -69,7 +69,7 @@ export const shadowBy = (taps) => `
 
   float unshadowed(vec3 at, float spread) {
     vec3 p = (to_shadow * vec4(at, 1)).xyz * 0.5 + 0.5;
-    if (p.z > 1.0) return 1.0;
+    p.z = min(p.z, 1.0);  // behind the map's far plane lies what is in the shadow of all it shows
     float sum = 0.0;
     for (int k = 0; k < SHADOW_TAPS; ++k) {
       vec2 tap = p.xy + spread * taps[k];

@@ -94,8 +94,8 @@ const RECEIVE = `
     n /= max(length(n), 1e-6);
     vec3 at = texelFetch(positions, place, 0).xyz + bias * n;
     vec3 p = (to_shadow * vec4(at, 1)).xyz * 0.5 + 0.5;
-    bool outside = any(lessThan(p.xy, vec2(0))) || any(greaterThan(p.xy, vec2(1))) || p.z > 1.0;
-    float seen = outside ? 1.0 : texture(shadow_map, p);
+    bool outside = any(lessThan(p.xy, vec2(0))) || any(greaterThan(p.xy, vec2(1)));
+    float seen = outside ? 1.0 : texture(shadow_map, vec3(p.xy, min(p.z, 1.0)));
     light = vec4(vec3(strength * seen * max(0.0, dot(n, towards))), alpha);
   }
 `;

@@ -9,8 +9,10 @@ export class Springs {
     this.group = new Group();
     this.rod = new CylinderGeometry(1, 1, 1, 12);
     this.ball = new SphereGeometry(1, 24, 16);
-    this.own = new MeshBasicMaterial({color: '#f0662e'});
-    this.foreign = new MeshBasicMaterial({color: '#7c8a9c'});
+    // Over everything, since what is pulled into the object must stay in sight.
+    const above = {depthTest: false, transparent: true};
+    this.own = new MeshBasicMaterial({color: '#f0662e', ...above});
+    this.foreign = new MeshBasicMaterial({color: '#7c8a9c', ...above});
     this.drawn = [];
   }
 
@@ -48,6 +50,7 @@ export class Springs {
     const group = new Group();
     const rod = new Mesh(this.rod, this.own), start = new Mesh(this.ball, this.own), end = new Mesh(this.ball, this.own);
     group.add(rod, start, end);
+    for (const part of group.children) part.renderOrder = 3;
     this.group.add(group);
     return {group, rod, start, end};
   }

@@ -13,7 +13,7 @@ import {SkyLight} from './sky_light.js';
 import {THEMES} from './themes.js';
 import {upAxisOf} from './up_axis.js';
 
-const KEY_MAP_SIZE = 1024;
+const KEY_MAP_SIZE = 1024, KEY_MAP_SIZE_IN_SOFTWARE = 512;
 const SETTLED = 96;                       // lamps after the last change that make the sky's light complete
 const SETTLED_IN_SOFTWARE = 32;           // less complete, but soon
 const AZIMUTH = 30, ELEVATION = 18;       // degrees, as in Supple's own pictures
@@ -36,7 +36,7 @@ export class Stage {
     this.scene = new Scene();
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
     this.light = new Light();
-    this.keyLamp = new Lamp(KEY_MAP_SIZE);
+    this.keyLamp = new Lamp(this.software ? KEY_MAP_SIZE_IN_SOFTWARE : KEY_MAP_SIZE);
     this.background = backdrop();
     this.scene.add(this.background);
     this.counters = {drawn: 0};
@@ -91,11 +91,10 @@ export class Stage {
     this.ground.uniforms.lines.value = height === null ? 0 : 1;
     this.light.uniforms.ground_height.value = this.groundHeight;
     this.ground.place(this.up, this.groundHeight, this.home);
-    this.unsettled = this.software ? SETTLED_IN_SOFTWARE : SETTLED;
-    this.invalidate();
+    this.shapeChanged();
   }
 
-  /** Tells that the shape has moved. */
+  /** Tells that the shape, or what its shadow falls on, has moved. */
   shapeChanged() {
     this.moved = true;
     this.unsettled = this.software ? SETTLED_IN_SOFTWARE : SETTLED;
@@ -227,9 +226,7 @@ export class Stage {
       this.ball = {centre, radius: 1.15 * radius};
     }
     this.light.uniforms.scene_radius.value = this.ball.radius;
-    this.keyLamp.aim(this.light.uniforms.key_towards.value, this.ball);
-    this.keyLamp.look(renderer, this.body.casters);
-    this.ground.update(renderer);
+    this.#castShadows();
     // Without a graphics card a moving object keeps the light that it had at rest.
     const busy = this.software && this.moved && this.sky.count > SETTLED;
     if (this.unsettled-- > 0 && !busy) this.sky.refine(this.up, this.ball);
@@ -237,6 +234,19 @@ export class Stage {
     camera.near = Math.max(1e-3 * this.home.radius, distance - 12 * this.home.radius);
     camera.far = distance + 40 * this.home.radius;
     camera.updateProjectionMatrix();
+  }
+
+  /** Shadows move with the object and, since the studio turns with it, with the camera. */
+  #castShadows() {
+    const {renderer, keyLamp} = this, towards = this.light.uniforms.key_towards.value;
+    this.shadowsLag ||= this.moved || keyLamp.towards.value.distanceTo(towards) > 1e-4;
+    // Without a graphics card those of a moving object lag by a picture.
+    const waits = this.software && this.moved && this.counters.drawn % 2;
+    if (!this.shadowsLag || waits) return;
+    this.shadowsLag = false;
+    keyLamp.aim(towards, this.ball);
+    keyLamp.look(renderer, this.body.casters);
+    this.ground.update(renderer);
   }
 
   #resize() {
