@@ -119,7 +119,7 @@ async function edited(page) {
   await page.evaluate(() => {
     const {id, centre: [x, y]} = supple.state.handles[1], d = supple.about.diagonal;
     for (let k = 1; k <= 12; ++k) {
-      const t = k / 12, c = Math.cos(0.45 * t), s = Math.sin(0.45 * t);
+      const t = k / 12, c = Math.cos(0.35 * t), s = Math.sin(0.35 * t);
       supple.ask({do: 'move', handle: id, grab: k === 1, motion: [
         c, -s, 0, x - c * x + s * y + 0.14 * d * t, s, c, 0, y - s * x - c * y + 0.03 * d * t, 0, 0, 1, 0.02 * d * t]});
     }
