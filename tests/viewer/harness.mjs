@@ -70,5 +70,5 @@ export async function openPage(browser, url, options = {}) {
 
 /** Waits until the last picture is as good as it gets. */
 export function settled(page) {
-  return page.waitForFunction(() => window.supple.settled, null, {timeout: 30_000});
+  return page.waitForFunction(() => window.supple.settled, null, {timeout: 120_000});
 }

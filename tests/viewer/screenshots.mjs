@@ -34,10 +34,16 @@ async function withSession(model, act) {
 /** Waits for a picture at rest, without notes over it. */
 async function shoot(page, name) {
   await page.evaluate(() => document.querySelector('.toasts').replaceChildren());
-  await page.mouse.move(560, 4);
   await settled(page);
   await page.waitForTimeout(300);
+  // Four points a pixel: what draws here has no smooth edges of its own.
+  const points = (ratio) => page.evaluate((r) => {
+    supple.app.stage.renderer.setPixelRatio(r);
+    supple.app.stage.drawNow();
+  }, ratio);
+  await points(2);
   await page.screenshot({path: join(out, `view-${name}.png`)});
+  await points(1);
 }
 
 /** The free node that is farthest along a direction and seen. */
@@ -56,23 +62,20 @@ function extreme(page, direction) {
 async function pulled(page) {
   const node = await extreme(page, [-1, 0.7, 0.2]), from = await page.evaluate((v) => supple.project(v), node);
   await page.evaluate(() => {
-    supple.set({pullStiffness: 2});
+    supple.set({pullStiffness: 0.5});
     supple.ask({do: 'set', damping: {mass: 1, stiffness: 0.01}});
     supple.ask({do: 'play'});
   });
   await page.waitForFunction(() => supple.frame.steps > 200);
   await page.mouse.move(from.x, from.y);
   await page.mouse.down();
-  await page.mouse.move(from.x - 30, from.y - 100, {steps: 12});
+  await page.mouse.move(from.x - 60, from.y - 110, {steps: 12});
   await page.waitForTimeout(7000);
   await page.keyboard.press('Space');
   await page.waitForFunction(() => !supple.frame.playing);
-  await page.evaluate(() => document.querySelector('.toasts').replaceChildren());
-  await settled(page);
-  await page.screenshot({path: join(out, 'view-pull.png')});
+  await shoot(page, 'pull');
   await page.evaluate(() => supple.set({theme: 'dark', colours: 'displacement'}));
-  await settled(page);
-  await page.screenshot({path: join(out, 'view-dark.png')});
+  await shoot(page, 'dark');
   await page.evaluate(() => supple.set({theme: 'light', colours: 'plain'}));
   await page.mouse.up();
 }
@@ -116,7 +119,7 @@ async function edited(page) {
   await page.evaluate(() => {
     const {id, centre: [x, y]} = supple.state.handles[1], d = supple.about.diagonal;
     for (let k = 1; k <= 12; ++k) {
-      const t = k / 12, c = Math.cos(0.45 * t), s = Math.sin(0.45 * t);
+      const t = k / 12, c = Math.cos(0.35 * t), s = Math.sin(0.35 * t);
       supple.ask({do: 'move', handle: id, grab: k === 1, motion: [
         c, -s, 0, x - c * x + s * y + 0.14 * d * t, s, c, 0, y - s * x - c * y + 0.03 * d * t, 0, 0, 1, 0.02 * d * t]});
     }

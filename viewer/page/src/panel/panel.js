@@ -100,9 +100,12 @@ export class Panel {
     const along = (g) => [0, 1, 2].map((axis) => (axis === this.axis ? g : 0));
     this.stiffness = slider('Stiffness', {low: 1e-3, high: 1e3, log: true, unit: '×'}, (stiffness) => this.#set({stiffness}));
     this.massDamping = slider('Drag', {low: 0, high: 10, unit: '1/s', title: 'Damping proportional to mass'}, (mass) => this.#damp({mass}));
-    this.stiffnessDamping = slider('Viscosity', {low: 0, high: 0.02, unit: 's', title: 'Damping proportional to stiffness'}, (stiffness) => this.#damp({stiffness}));
-    this.floor = toggle('Floor', (on) => this.#set({floor: on ? this.#floorAt(app.model.about.low[this.axis] - 0.02 * app.model.about.diagonal) : null}));
-    this.floorHeight = slider('Its height', {low: 0, high: 1, unit: 'm', title: 'Height of the floor'}, (height) => this.#set({floor: this.#floorAt(height)}));
+    this.stiffnessDamping = slider('Viscosity', {low: 0, high: 0.02, unit: 's', title: 'Damping proportional to stiffness'},
+      (stiffness) => this.#damp({stiffness}));
+    const below = ({low, diagonal}) => low[this.axis] - 0.02 * diagonal;
+    this.floor = toggle('Floor', (on) => this.#set({floor: on ? this.#floorAt(below(app.model.about)) : null}));
+    this.floorHeight = slider('Its height', {low: 0, high: 1, unit: 'm', title: 'Height of the floor'},
+      (height) => this.#set({floor: this.#floorAt(height)}));
     this.floorHeight.querySelector('input[type=range]').hidden = true;
     const made = section('Forces', this.pull, this.gravity,
       buttons(button('None', () => this.#set({gravity: [0, 0, 0]})), button('Earth', () => this.#set({gravity: along(-9.81)})),

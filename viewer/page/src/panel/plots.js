@@ -48,7 +48,7 @@ export class Plots {
     if (time - this.drawnAt < REDRAW || !this.frame || this.element.offsetParent === null) return;
     this.drawnAt = time;
     const style = getComputedStyle(this.element);
-    for (const plot of this.plots) plot.draw(performance.now() / 1000, this.frame, this.page, style);
+    for (const plot of this.plots) plot.draw(this.frame, this.page, style);
   }
 }
 
@@ -70,7 +70,9 @@ class Plot {
     while (this.points[0][0] < now - SPAN) this.points.shift();
   }
 
-  draw(now, frame, page, style) {
+  /** Draws up to the last frame, so that a session at rest keeps its plots. */
+  draw(frame, page, style) {
+    const now = this.points.at(-1)[0];
     this.value.textContent = this.plot.text(frame, page);
     const {canvas, points, plot} = this;
     const ratio = window.devicePixelRatio, width = canvas.clientWidth, height = canvas.clientHeight;

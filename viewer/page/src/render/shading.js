@@ -1,4 +1,4 @@
-import {Color, Vector3} from 'three';
+import {Vector3} from 'three';
 
 /**
  * The light of Supple's own pictures (io/picture/studio), so that the page shows an object as they do: a key light from
@@ -79,8 +79,3 @@ export const shadowBy = (taps) => `
     return sum / float(SHADOW_TAPS);
   }
 `;
-
-/** A colour of a style sheet as the shaders take it: linear. */
-export function linear(colour) {
-  return new Color(colour);
-}

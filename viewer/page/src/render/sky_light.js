@@ -1,5 +1,5 @@
 import {
-  AddEquation, ClampToEdgeWrapping, CustomBlending, HalfFloatType, LinearFilter, NearestFilter, OneMinusSrcAlphaFactor,
+  AddEquation, ClampToEdgeWrapping, CustomBlending, HalfFloatType, NearestFilter, OneMinusSrcAlphaFactor,
   SrcAlphaFactor, Vector3, WebGLRenderTarget,
 } from 'three';
 import {Lamp} from './lamp.js';

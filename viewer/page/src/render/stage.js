@@ -183,12 +183,6 @@ export class Stage {
     return new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse).elements;
   }
 
-  /** Metres that a pixel of the page is wide at a point. */
-  metresPerPixel(point) {
-    const distance = new Vector3(...point).distanceTo(this.camera.position);
-    return 2 * distance * Math.tan(rad(FIELD_OF_VIEW / 2)) / this.canvas.clientHeight;
-  }
-
   /** Draws at once, so that the canvas can be read in the same turn. */
   drawNow() {
     this.quality.rest();
