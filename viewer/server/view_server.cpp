@@ -59,12 +59,14 @@ class Client {
  public:
   virtual ~Client() = default;
   virtual void pump() = 0;   ///< sends and reads what there is
-  virtual void leave() = 0;  ///< says farewell
+  virtual void leave() = 0;  ///< says farewell, then ends
+  virtual void end() = 0;    ///< closes the connection
 };
 
 /// What connections share. All of it belongs to the thread of the network, but the hub.
 struct Server {
   Hub& hub;
+  asio::io_context& io;
   Guard guard;
   Resources page;
   std::size_t connections = 0;
@@ -114,6 +116,15 @@ class Session final : public Client, public std::enable_shared_from_this<Session
 
   void leave() override { close(websocket::close_code::going_away); }
 
+  /// Nothing more is read or written, and the last handler takes this away.
+  void end() override {
+    leaving_ = true;
+    Error ignored;
+    beast::get_lowest_layer(socket_).socket().close(ignored);
+    if (server_.clients.erase(shared_from_this()) > 0) server_.hub.disconnect(id_);
+    if (server_.closing && server_.clients.empty()) server_.io.stop();
+  }
+
  private:
   void read() {
     reading_ = true;
@@ -155,14 +166,6 @@ class Session final : public Client, public std::enable_shared_from_this<Session
     closed_ = true;
     socket_.async_close(code, [self = shared_from_this()](Error) { self->end(); });
   }
-  /// Nothing more is read or written, and the last handler takes this away.
-  void end() {
-    leaving_ = true;
-    Error ignored;
-    beast::get_lowest_layer(socket_).socket().close(ignored);
-    if (server_.clients.erase(shared_from_this()) > 0) server_.hub.disconnect(id_);
-  }
-
   Server& server_;
   Counted counted_;
   websocket::stream<beast::tcp_stream, /*deflate=*/false> socket_;
@@ -297,7 +300,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 class ViewServer::Network {
  public:
   explicit Network(ServerOptions options)
-      : hub_([this] { wake(); }), server_{.hub = hub_, .guard = {}, .page = std::move(options.page)} {
+      : hub_([this] { wake(); }), server_{.hub = hub_, .io = io_, .guard = {}, .page = std::move(options.page)} {
     Error error;
     const auto address = asio::ip::make_address(options.address, error);
     if (error)
@@ -344,7 +347,10 @@ class ViewServer::Network {
       acceptor_.close(ignored);
       for (const auto& client : std::set(server_.clients)) client->leave();
       timer_.expires_after(server_.clients.empty() ? 0ms : farewell);
-      timer_.async_wait([this](Error) { io_.stop(); });
+      timer_.async_wait([this](Error) {
+        for (const auto& client : std::set(server_.clients)) client->end();
+        io_.stop();
+      });
     });
   }
 

@@ -48,12 +48,13 @@ class Pacemaker {
   static constexpr double patience = 0.25, window = 0.5;  // [s]
 
   void measure(double wall) {
-    elapsed_ += wall;
-    if (elapsed_ < window) return;
-    rate_ = static_cast<double>(steps_) / elapsed_;
-    speed_ = moved_ / elapsed_;
-    elapsed_ = moved_ = 0;
-    steps_ = 0;
+    if (elapsed_ >= window) {
+      rate_ = static_cast<double>(steps_) / elapsed_;
+      speed_ = moved_ / elapsed_;
+      elapsed_ = moved_ = 0;
+      steps_ = 0;
+    }
+    elapsed_ += wall;  // whose steps are yet to come
   }
 
   double owed_ = 0, behind_for_ = 0;
