@@ -20,7 +20,7 @@ int read_label(const JsonFields& fields) {
 std::vector<Index> listed_nodes(const JsonFields& fields, const Points& nodes) {
   std::vector<Index> list = fields.integers("indices", between(0, static_cast<double>(nodes.rows() - 1)));
   std::ranges::sort(list);
-  list.erase(std::ranges::unique(list).begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
   return list;
 }
 

@@ -33,7 +33,7 @@ EditHandle EditSession::make(HandleRegion region) {
   require(now_.handles.size() < most_handles,
           "there are " + std::to_string(most_handles) + " handles, as many as may be");
   std::ranges::sort(region.nodes);
-  region.nodes.erase(std::ranges::unique(region.nodes).begin(), region.nodes.end());
+  region.nodes.erase(std::unique(region.nodes.begin(), region.nodes.end()), region.nodes.end());
   for (const Index v : region.nodes)
     require(v >= 0 && v < model_->rest().rows(), "node " + std::to_string(v) + " does not exist");
   const std::vector<Index>& fixed = fixed_nodes(model_->model.body);

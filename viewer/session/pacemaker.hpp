@@ -12,13 +12,13 @@ class Pacemaker {
   /// \param wall  time that has passed since the last call [s].  \param speed  session time over wall-clock time wanted.
   void pass(double wall, double speed) {
     wall = std::max(wall, 0.0);
+    measure(wall);
     owed_ += wall * speed;
     behind_for_ = std::max(0.0, behind_for_ - wall);
     if (const double most = patience * speed; owed_ > most) {
       owed_ = most;
       behind_for_ = 1;
     }
-    measure(wall);
   }
   /// Forgets what is owed: nothing was to move.
   void rest(double wall) {
@@ -47,6 +47,7 @@ class Pacemaker {
  private:
   static constexpr double patience = 0.25, window = 0.5;  // [s]
 
+  /// Of what has passed before, with its steps; those of this time are still to come.
   void measure(double wall) {
     if (elapsed_ >= window) {
       rate_ = static_cast<double>(steps_) / elapsed_;
@@ -54,7 +55,7 @@ class Pacemaker {
       elapsed_ = moved_ = 0;
       steps_ = 0;
     }
-    elapsed_ += wall;  // whose steps are yet to come
+    elapsed_ += wall;
   }
 
   double owed_ = 0, behind_for_ = 0;

@@ -111,7 +111,7 @@ void SimulationSession::hold(const std::vector<Index>& nodes) {
             "node " + std::to_string(k) + " does not exist, expected 0 to " + std::to_string(geometry.num_nodes() - 1));
   held_ = nodes;
   std::ranges::sort(held_);
-  held_.erase(std::ranges::unique(held_).begin(), held_.end());
+  held_.erase(std::unique(held_.begin(), held_.end()), held_.end());
   const std::vector<Index> sample = spread_sample(geometry.rest(held_, Eigen::all), most_held);
   holding_.clear();
   for (const Index k : sample) {
