@@ -18,7 +18,9 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <netinet/tcp.h>
 #include <set>
+#include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
 
@@ -37,8 +39,8 @@ using namespace std::chrono_literals;
 constexpr std::size_t most_connections = 128;
 constexpr std::uint32_t largest_header = 16 << 10;  // [bytes]
 constexpr auto request_time = 30s;                  // to send a request, or to take an answer
-constexpr auto silence = 60s;     // of a client's machine, in the middle of which it is asked whether it lives
-constexpr auto farewell = 300ms;  // for clients to take leave
+constexpr int silence = 60;                         // of a client's machine, until it counts as gone [s]
+constexpr auto farewell = 300ms;                    // for clients to take leave
 
 constexpr std::string_view no_page =
     "The page of `supple view` was not built: npm was missing. Install it (apt-get install npm) and build the target\n"
@@ -47,6 +49,18 @@ constexpr std::string_view no_page =
 std::string machine_name() {
   char name[256] = {};
   return gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
+
+/// Lets the system find out whether the other machine still lives: no timer of ours is touched by a frame.
+void watch(Tcp::socket& socket) {
+  const auto set = [&](int option, int value) {
+    ::setsockopt(socket.native_handle(), IPPROTO_TCP, option, &value, sizeof value);
+  };
+  socket.set_option(asio::socket_base::keep_alive(true));
+  set(TCP_KEEPIDLE, silence / 2);
+  set(TCP_KEEPINTVL, silence / 6);
+  set(TCP_KEEPCNT, 3);
+  set(TCP_USER_TIMEOUT, 1000 * silence);
 }
 
 /// "::1" → "[::1]"
@@ -97,8 +111,10 @@ class Session final : public Client, public std::enable_shared_from_this<Session
       : server_(server), counted_(std::move(counted)), socket_(std::move(stream)) {}
   void start(const http::request<http::empty_body>& request) {
     beast::get_lowest_layer(socket_).expires_never();
-    beast::get_lowest_layer(socket_).socket().set_option(Tcp::no_delay(true));
-    socket_.set_option(websocket::stream_base::timeout{request_time, silence, true});
+    Tcp::socket& socket = beast::get_lowest_layer(socket_).socket();
+    socket.set_option(Tcp::no_delay(true));
+    watch(socket);
+    socket_.set_option(websocket::stream_base::timeout{request_time, websocket::stream_base::none(), false});
     socket_.read_message_max(largest_message);
     socket_.async_accept(request, [self = shared_from_this()](Error error) {
       if (error || self->server_.closing) return;
