@@ -15,6 +15,12 @@ if(TARGET supple)
     SOURCES app/kept_files_test.cpp app/supple_process.cpp)
   target_compile_definitions(test_kept_files PRIVATE SUPPLE_COMMAND="$<TARGET_FILE:supple>")
   add_dependencies(test_kept_files supple)
+  if(TARGET supple_view_server)
+    supple_test(view_command LABEL unit LINKS supple::core nlohmann_json::nlohmann_json
+      SOURCES app/view_command_test.cpp app/supple_process.cpp)
+    target_compile_definitions(test_view_command PRIVATE SUPPLE_COMMAND="$<TARGET_FILE:supple>")
+    add_dependencies(test_view_command supple)
+  endif()
   supple_test(real_shapes LABEL slow LINKS supple::core nlohmann_json::nlohmann_json
     SOURCES app/real_shapes_test.cpp app/supple_process.cpp)
   target_compile_definitions(test_real_shapes PRIVATE SUPPLE_COMMAND="$<TARGET_FILE:supple>"

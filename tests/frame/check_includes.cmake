@@ -8,13 +8,14 @@ set(sees_sparse core)
 set(sees_physics numerics core)
 set(sees_io physics core)
 set(sees_reduction physics sparse numerics core)
-set(sees_app io reduction physics sparse numerics core)
-set(sees_examples io reduction physics sparse numerics core)
+set(sees_viewer io reduction physics sparse numerics core)
+set(sees_app viewer io reduction physics sparse numerics core)
+set(sees_examples viewer io reduction physics sparse numerics core)
 # What users test their own models with.
 set(sees_testing reduction physics sparse numerics core)
 # Benchmarks stand around the house as tests do, and may measure the problems that tests make.
-set(sees_benchmarks tests testing io reduction physics sparse numerics core)
-set(floors core numerics sparse physics io reduction testing app examples benchmarks)
+set(sees_benchmarks tests testing viewer io reduction physics sparse numerics core)
+set(floors core numerics sparse physics io reduction viewer testing app examples benchmarks)
 
 # Inside a floor, from the ground up: a folder sees those before it.
 set(folders_of_numerics linear eigen optimize)
@@ -22,6 +23,7 @@ set(folders_of_sparse problem nnls selection selectors)
 set(folders_of_physics mesh material model heat load system time statics body)
 set(folders_of_reduction subspace basis system training model pipeline editing plugin)
 set(folders_of_io text table mesh surface builtin frames picture)
+set(folders_of_viewer session scene server)
 set(folders_of_app report scene commands)
 # Inside such a folder: a room of its own, which nobody else sees.
 set(rooms_of_io picture/studio)

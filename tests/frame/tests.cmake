@@ -3,7 +3,7 @@ add_test(NAME frame.includes_run_downward
 set_tests_properties(frame.includes_run_downward PROPERTIES LABELS unit)
 
 add_test(NAME frame.tutorials_show_code_that_runs
-  COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DDOCS=materials.md,elements.md,selectors.md,subspaces.md,integrators.md,loads.md,plugins.md
+  COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DDOCS=materials.md,elements.md,selectors.md,subspaces.md,integrators.md,loads.md,plugins.md,viewer.md
           -P ${CMAKE_CURRENT_LIST_DIR}/check_docs.cmake)
 set_tests_properties(frame.tutorials_show_code_that_runs PROPERTIES LABELS unit)
 
@@ -53,7 +53,7 @@ supple_package_test(parts_of_ones_own SCRIPT run_own_parts.cmake SOURCE own_part
 # A component needs the packages named here and none of the others; Eigen and threads are behind all of them.
 function(supple_component_test component)
   cmake_parse_arguments(ARG "" "" "NEEDS" ${ARGN})
-  set(hidden NLopt CHOLMOD UMFPACK Anasazi MPI ZLIB pugixml PNG GTest nlohmann_json CLI11)
+  set(hidden NLopt CHOLMOD UMFPACK Anasazi MPI ZLIB pugixml PNG GTest nlohmann_json CLI11 Boost)
   if(ARG_NEEDS)
     list(REMOVE_ITEM hidden ${ARG_NEEDS})
   endif()
@@ -67,6 +67,7 @@ supple_component_test(numerics NEEDS NLopt CHOLMOD UMFPACK)
 supple_component_test(eigensolver NEEDS NLopt CHOLMOD UMFPACK Anasazi MPI)
 supple_component_test(physics NEEDS NLopt CHOLMOD UMFPACK)
 supple_component_test(reduction NEEDS NLopt CHOLMOD UMFPACK Anasazi MPI)
+supple_component_test(viewer NEEDS NLopt CHOLMOD UMFPACK Anasazi MPI)
 supple_component_test(io NEEDS NLopt CHOLMOD UMFPACK ZLIB pugixml)
 supple_component_test(pictures NEEDS NLopt CHOLMOD UMFPACK ZLIB PNG)
 

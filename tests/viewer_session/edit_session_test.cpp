@@ -110,7 +110,7 @@ TEST(EditSessionTest, UndoAndRedoLeadToTheVeryShapes) {
   EXPECT_EQ(session.handles().front().id, other);
   session.undo();
   session.add(region(
-      *model, [](double x) { return 0.6 < x && x < 0.9; }, "neck"));
+      *model, [](double x) { return 0.6 < x && x < 0.7; }, "neck"));
   EXPECT_FALSE(session.can_redo());  // another future
 }
 
@@ -177,7 +177,7 @@ TEST(EditSessionTest, TellsWhenTheSubspaceCannotFollow) {
       *model, [](double x) { return 0.45 < x && x < 0.55; }, "waist"));
   settle(session);
   EXPECT_LT(session.held(), held_over_diagonal_at_most);
-  session.move(id, RigidMotion::turn({1, 0, 0}, 3, model->rest().colwise().mean().transpose()));
+  session.move(id, RigidMotion::turn({1, 0, 0}, 2.5, model->rest().colwise().mean().transpose()));
   settle(session);
   EXPECT_GT(session.held(), held_over_diagonal_at_most);
 }

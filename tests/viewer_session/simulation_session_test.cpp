@@ -39,8 +39,8 @@ TEST(SimulationSessionTest, APullMovesItsNodeToTheTargetUntilTheSpringBalancesTh
   const Pull pull = pull_at_tip(*model);
   session.pull(1, pull);
   const double distance = (place_of(*model, session.state().u, pull.node) - pull.target).norm();
-  settle(session, 8);
-  EXPECT_LT((place_of(*model, session.state().u, pull.node) - pull.target).norm(), distance);
+  settle(session, 5);
+  EXPECT_LT((place_of(*model, session.state().u, pull.node) - pull.target).norm(), 0.9 * distance);
   settle(session);
   EXPECT_LT((place_of(*model, session.state().u, pull.node) - pull.target).norm(), 0.3 * distance);
   // f(q) = Uᵀ k (target − x), with the default stiffness
@@ -138,7 +138,7 @@ TEST(SimulationSessionTest, ResetLeadsToTheVeryStart) {
   fresh.pull(1, pull);
   settle(session, 20);
   settle(fresh, 20);
-  EXPECT_LT((session.state().u - fresh.state().u).norm(), 1e-5 * fresh.state().u.norm());  // as steps are solved
+  EXPECT_LT((session.state().u - fresh.state().u).norm(), 1e-4 * fresh.state().u.norm());  // steps are solved to 1e-6
 }
 
 TEST(SimulationSessionTest, TheFactorOnTheStiffnessScalesSquaredFrequencies) {
@@ -196,10 +196,10 @@ TEST(SimulationSessionTest, TheFloorBearsAFreeObject) {
   EXPECT_LT(session.kinetic_energy(), 1e-3 * model->mass * 9.81 * 0.05 * model->diagonal);
 }
 
-TEST(SimulationSessionTest, DISABLED_TakesBackAStepThatEndsNowhere) {
-  const auto model = clamped_view_model();
+TEST(SimulationSessionTest, TakesBackAStepThatEndsNowhere) {
+  const auto model = boastful_view_model();
   SimulationSession session(model);
-  session.set({.gravity = {0, -1e5, 0}, .step = 1, .integrator = {"newmark"}});
+  session.set({.gravity = {0, -30, 0}, .step = model->default_step()});
   std::string failure;
   Vector before;
   for (int k = 0; k < 200 && failure.empty(); ++k) {

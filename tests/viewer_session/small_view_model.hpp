@@ -3,6 +3,7 @@
 
 #include <io/builtin/builtin_meshes.hpp>
 #include <reduction/pipeline/reduce.hpp>
+#include <viewer/session/scaled_system.hpp>
 #include <viewer/session/view_model.hpp>
 
 #include <memory>
@@ -29,6 +30,20 @@ inline std::shared_ptr<const ViewModel> clamped_view_model() {
 }
 inline std::shared_ptr<const ViewModel> free_view_model() {
   static const auto model = make_small_view_model(false);
+  return model;
+}
+
+/// A system that tells of more energy than its forces have.
+class BoastfulSystem : public ScaledSystem {
+ public:
+  explicit BoastfulSystem(AnySystem<Matrix> system) : ScaledSystem(std::move(system), 1) {}
+  double energy(VectorIn q) const { return 5 * ScaledSystem::energy(q); }
+};
+
+/// The clamped bar, where no step that leads far is sound.
+inline std::shared_ptr<const ViewModel> boastful_view_model() {
+  auto model = std::make_shared<ViewModel>(*clamped_view_model());
+  model->system = AnySystem<Matrix>(std::make_shared<const BoastfulSystem>(model->system));
   return model;
 }
 

@@ -18,7 +18,9 @@
 #include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <netinet/tcp.h>
 #include <set>
+#include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
 
@@ -37,8 +39,8 @@ using namespace std::chrono_literals;
 constexpr std::size_t most_connections = 128;
 constexpr std::uint32_t largest_header = 16 << 10;  // [bytes]
 constexpr auto request_time = 30s;                  // to send a request, or to take an answer
-constexpr auto silence = 60s;     // of a client's machine, in the middle of which it is asked whether it lives
-constexpr auto farewell = 300ms;  // for clients to take leave
+constexpr int silence = 60;                         // of a client's machine, until it counts as gone [s]
+constexpr auto farewell = 300ms;                    // for clients to take leave
 
 constexpr std::string_view no_page =
     "The page of `supple view` was not built: npm was missing. Install it (apt-get install npm) and build the target\n"
@@ -47,6 +49,18 @@ constexpr std::string_view no_page =
 std::string machine_name() {
   char name[256] = {};
   return gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
+
+/// Lets the system find out whether the other machine still lives: no timer of ours is touched by a frame.
+void watch(Tcp::socket& socket) {
+  const auto set = [&](int option, int value) {
+    ::setsockopt(socket.native_handle(), IPPROTO_TCP, option, &value, sizeof value);
+  };
+  socket.set_option(asio::socket_base::keep_alive(true));
+  set(TCP_KEEPIDLE, silence / 2);
+  set(TCP_KEEPINTVL, silence / 6);
+  set(TCP_KEEPCNT, 3);
+  set(TCP_USER_TIMEOUT, 1000 * silence);
 }
 
 /// "::1" → "[::1]"
@@ -59,12 +73,14 @@ class Client {
  public:
   virtual ~Client() = default;
   virtual void pump() = 0;   ///< sends and reads what there is
-  virtual void leave() = 0;  ///< says farewell
+  virtual void leave() = 0;  ///< says farewell, then ends
+  virtual void end() = 0;    ///< closes the connection
 };
 
 /// What connections share. All of it belongs to the thread of the network, but the hub.
 struct Server {
   Hub& hub;
+  asio::io_context& io;
   Guard guard;
   Resources page;
   std::size_t connections = 0;
@@ -95,8 +111,10 @@ class Session final : public Client, public std::enable_shared_from_this<Session
       : server_(server), counted_(std::move(counted)), socket_(std::move(stream)) {}
   void start(const http::request<http::empty_body>& request) {
     beast::get_lowest_layer(socket_).expires_never();
-    beast::get_lowest_layer(socket_).socket().set_option(Tcp::no_delay(true));
-    socket_.set_option(websocket::stream_base::timeout{request_time, silence, true});
+    Tcp::socket& socket = beast::get_lowest_layer(socket_).socket();
+    socket.set_option(Tcp::no_delay(true));
+    watch(socket);
+    socket_.set_option(websocket::stream_base::timeout{request_time, websocket::stream_base::none(), false});
     socket_.read_message_max(largest_message);
     socket_.async_accept(request, [self = shared_from_this()](Error error) {
       if (error || self->server_.closing) return;
@@ -113,6 +131,15 @@ class Session final : public Client, public std::enable_shared_from_this<Session
   }
 
   void leave() override { close(websocket::close_code::going_away); }
+
+  /// Nothing more is read or written, and the last handler takes this away.
+  void end() override {
+    leaving_ = true;
+    Error ignored;
+    beast::get_lowest_layer(socket_).socket().close(ignored);
+    if (server_.clients.erase(shared_from_this()) > 0) server_.hub.disconnect(id_);
+    if (server_.closing && server_.clients.empty()) server_.io.stop();
+  }
 
  private:
   void read() {
@@ -155,14 +182,6 @@ class Session final : public Client, public std::enable_shared_from_this<Session
     closed_ = true;
     socket_.async_close(code, [self = shared_from_this()](Error) { self->end(); });
   }
-  /// Nothing more is read or written, and the last handler takes this away.
-  void end() {
-    leaving_ = true;
-    Error ignored;
-    beast::get_lowest_layer(socket_).socket().close(ignored);
-    if (server_.clients.erase(shared_from_this()) > 0) server_.hub.disconnect(id_);
-  }
-
   Server& server_;
   Counted counted_;
   websocket::stream<beast::tcp_stream, /*deflate=*/false> socket_;
@@ -297,7 +316,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 class ViewServer::Network {
  public:
   explicit Network(ServerOptions options)
-      : hub_([this] { wake(); }), server_{.hub = hub_, .guard = {}, .page = std::move(options.page)} {
+      : hub_([this] { wake(); }), server_{.hub = hub_, .io = io_, .guard = {}, .page = std::move(options.page)} {
     Error error;
     const auto address = asio::ip::make_address(options.address, error);
     if (error)
@@ -344,7 +363,10 @@ class ViewServer::Network {
       acceptor_.close(ignored);
       for (const auto& client : std::set(server_.clients)) client->leave();
       timer_.expires_after(server_.clients.empty() ? 0ms : farewell);
-      timer_.async_wait([this](Error) { io_.stop(); });
+      timer_.async_wait([this](Error) {
+        for (const auto& client : std::set(server_.clients)) client->end();
+        io_.stop();
+      });
     });
   }
 
