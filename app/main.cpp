@@ -110,6 +110,9 @@ int run(int argc, char** argv) {
   }
 }
 
+/// Run by the loader before the initialisers of libraries.
+[[gnu::section(".preinit_array"), gnu::used]] void (*before_libraries)() = hold_signals;
+
 }  // namespace
 
 int main(int argc, char** argv) {

@@ -2,12 +2,13 @@
 #include <app/report/terminal.hpp>
 #include <core/output_file.hpp>
 
+#include <array>
 #include <atomic>
-#include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
-#include <fcntl.h>
 #include <string>
+#include <sys/syscall.h>
 #include <thread>
 #include <unistd.h>
 
@@ -31,25 +32,34 @@ std::function<void()>& last_deed() {
 }
 
 std::atomic<int> last_signal = 0;
-int caught[2];  // a pipe from the handler, in which hardly anything is allowed, to the thread
+constexpr std::array signals_that_end{SIGINT, SIGTERM, SIGHUP};
 
-void pass_on(int signal) {
-  const int error = errno;
-  last_signal = signal;
-  const auto number = static_cast<unsigned char>(signal);
-  [[maybe_unused]] const ssize_t written = ::write(caught[1], &number, 1);
-  errno = error;
+/// Those that whoever started the process does not have ignored, as under nohup.
+sigset_t awaited() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : signals_that_end) {
+    struct sigaction current {};
+    if (sigaction(signal, nullptr, &current) != 0 || current.sa_handler != SIG_IGN) sigaddset(&set, signal);
+  }
+  return set;
 }
 
 }  // namespace
 
+// Before the C library and the sanitizers are ready: no call of theirs.
+[[gnu::no_sanitize("address", "thread", "undefined")]] void hold_signals() {
+  std::uint64_t mask = 0;
+  for (const int signal : signals_that_end) mask |= std::uint64_t{1} << (signal - 1);
+  ::syscall(SYS_rt_sigprocmask, SIG_BLOCK, &mask, nullptr, sizeof mask);
+}
+
 void watch_for_signals() {
-  if (::pipe2(caught, O_CLOEXEC) != 0) return;
   files();
-  std::thread([] {
-    unsigned char signal = 0;
-    while (::read(caught[0], &signal, 1) != 1)
-      if (errno != EINTR) return;
+  std::thread([set = awaited()] {
+    int signal = 0;
+    while (sigwait(&set, &signal) != 0) continue;
+    last_signal = signal;
     const std::lock_guard lock(files());
     if (last_deed()) last_deed()();
     clear_progress();
@@ -57,14 +67,6 @@ void watch_for_signals() {
     if (!farewell().empty()) std::fprintf(stderr, "supple: %s\n", farewell().c_str());
     _exit(128 + signal);
   }).detach();
-  struct sigaction handler {};
-  handler.sa_handler = pass_on;
-  handler.sa_flags = SA_RESTART;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction current {};
-    if (sigaction(signal, nullptr, &current) == 0 && current.sa_handler == SIG_IGN) continue;  // as under nohup
-    sigaction(signal, &handler, nullptr);
-  }
 }
 
 void on_signal_say(std::string text) {

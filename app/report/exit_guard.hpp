@@ -8,8 +8,12 @@
 
 namespace supple {
 
-/// From now on SIGINT, SIGTERM and SIGHUP are passed to a thread of its own, which ends the process when no ExitGuard
-/// lives, whatever thread they reach: libraries may have started some before main().
+/// Blocks SIGINT, SIGTERM and SIGHUP in this thread and all that it starts, so that they reach nobody but the thread of
+/// watch_for_signals(). To be called before libraries are initialised: OpenBLAS starts threads then, and METIS, while it
+/// orders a matrix, takes SIGTERM for itself, gives up the ordering and forgets the signal.
+void hold_signals();
+
+/// From now on a thread of its own waits for these signals, and ends the process when no ExitGuard lives. \pre hold_signals()
 void watch_for_signals();
 
 /// What is said on stderr if a signal ends the process from now on: one line, such as where results so far are kept.

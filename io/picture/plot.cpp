@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
@@ -85,7 +86,10 @@ Run run(std::vector<std::string> command, std::string_view input) {
   ::posix_spawn_file_actions_adddup2(&actions, ::fileno(messages.get()), 2);
   posix_spawnattr_t attributes;  // a process group of its own: Ctrl-C is for the caller, who may be writing a file
   ::posix_spawnattr_init(&attributes);
-  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  sigset_t none;  // and it holds no signals back, whatever the caller does
+  sigemptyset(&none);
+  ::posix_spawnattr_setsigmask(&attributes, &none);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
   Run result;
   pid_t child = 0;
   result.error = ::posix_spawnp(&child, arguments[0], &actions, &attributes, arguments.data(), environ);

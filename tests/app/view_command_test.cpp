@@ -35,8 +35,9 @@ TEST_F(ViewCommandTest, PrintsItsAddressAndServesUntilASignal) {
 TEST_F(ViewCommandTest, EndsWhileItStillReduces) {
   Arguments large = small_mesh;
   large[1] = "bar:40x10x10";
-  const Outcome outcome = run_supple_until_signal(large, folder, SIGTERM, 300ms);
-  EXPECT_EQ(outcome.exit_code, 128 + SIGTERM);
+  // METIS, which orders its matrix somewhere here, takes signals for itself
+  for (std::chrono::milliseconds after = 200ms; after <= 440ms; after += 20ms)
+    EXPECT_EQ(run_supple_until_signal(large, folder, SIGTERM, after).exit_code, 128 + SIGTERM) << after.count();
 }
 
 TEST_F(ViewCommandTest, PrintsTheTokenWhereItListensToOthers) {
