@@ -3,7 +3,6 @@
 #include <core/stopwatch.hpp>
 #include <numerics/optimize/solver_names.hpp>
 #include <physics/body/body_system.hpp>
-#include <physics/time/backward_difference.hpp>
 #include <physics/time/integrator_library.hpp>
 #include <reduction/system/error_estimator.hpp>
 
@@ -85,7 +84,7 @@ class SceneLoads {
 
 /// Of a state at the end of a step.
 using Estimate = std::function<ErrorRecord(double time, VectorIn u)>;
-constexpr Index estimate_every = 4;  // steps
+constexpr Index estimate_every = MotionErrorEstimator::every;
 
 /// \param frame  unknowns → the coordinates that frames keep. \param estimate  of the error, or null.
 template <typename MatrixType, typename Frame>
@@ -103,13 +102,8 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
 
   Stopwatch setup;
   SceneLoads loads(system, scene);
-  ControlledIntegrator<AnySystem<MatrixType>> integrator(
-      system, options.step, [&](double h) { return make_integrator(options.integrator, system, h, options.steps); },
-      options.steps.damping, options.control,
-      [&](double h) {
-        using System = AnySystem<MatrixType>;
-        return AnyIntegrator<System>(std::make_unique<BackwardEuler<System>>(system, h, options.steps));
-      });
+  auto integrator =
+      make_controlled_integrator(options.integrator, system, options.step, options.steps, options.control);
   State state = integrator.at_rest();
   integrator.balance(loads.at(0), state);
   result.setup_seconds = setup.seconds();

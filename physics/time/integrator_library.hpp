@@ -5,6 +5,7 @@
 #include <physics/system/any_system.hpp>
 #include <physics/time/any_integrator.hpp>
 #include <physics/time/implicit_step.hpp>
+#include <physics/time/step_control.hpp>
 
 #include <functional>
 #include <memory>
@@ -59,6 +60,20 @@ AnyIntegrator<AnySystem<Matrix>> make_integrator(const Choice&, const AnySystem<
                                                  const StepOptions&) = delete;  // it would dangle
 AnyIntegrator<AnySystem<SparseMatrix>> make_integrator(const Choice&, const AnySystem<SparseMatrix>&&, double,
                                                        const StepOptions&) = delete;
+
+/// The same under control of its steps; those that fail however short they are go to backward Euler.
+template <typename MatrixType>
+ControlledIntegrator<AnySystem<MatrixType>> make_controlled_integrator(const Choice& choice,
+                                                                       const AnySystem<MatrixType>& system, double h,
+                                                                       const StepOptions& step,
+                                                                       const StepControl& control) {
+  const auto by = [&system, &step](Choice method) {
+    return [&system, step, method = std::move(method)](double part) {
+      return make_integrator(method, system, part, step);
+    };
+  };
+  return {system, h, by(choice), step.damping, control, by({"backward-euler"})};
+}
 
 /// What a choice promises about energy.
 /// \throws std::invalid_argument for one that no system could be integrated by: unknown, or with options out of range.

@@ -30,6 +30,13 @@ RigidMotion RigidMotion::from(const Eigen::Matrix4d& matrix, double tolerance) {
   return motion;
 }
 
+Eigen::Matrix4d RigidMotion::matrix() const {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = rotation;
+  matrix.topRightCorner<3, 1>() = translation;
+  return matrix;
+}
+
 RigidMotion RigidMotion::fit(const Points& before, const Points& after) {
   require(before.rows() > 0, "there are no points to fit a motion to");
   require_size("after", after.rows(), before.rows());

@@ -21,6 +21,7 @@ struct RigidMotion {
 
   /// First `first`, then this.
   RigidMotion after(const RigidMotion& first) const { return {rotation * first.rotation, (*this)(first.translation)}; }
+  Eigen::Matrix4d matrix() const;  ///< acting on (x, 1), what from() takes
   RigidMotion inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
 
   /// A turn by `angle` [rad] about an axis through a centre [m], then a translation [m].

@@ -69,6 +69,9 @@ class ErrorEstimator {
 /// states look like. Linear about rest: good for as long as the error is small beside the motion.
 class MotionErrorEstimator {
  public:
+  static constexpr Index every =
+      4;  ///< steps from call to call that simulations take: as good, for a quarter of the time
+
   MotionErrorEstimator(ErrorEstimator states, const RayleighDamping& damping);
 
   /// To be called in the order of times, not necessarily after each step; modes with less than two calls a period are

@@ -143,13 +143,9 @@ nlohmann::ordered_json edit_scene_json(const EditScene& scene) {
   for (const Edit& edit : scene.edits) {
     Json moves = Json::array();
     for (const auto& [handle, motion] : edit.moves) {
-      Json matrix = Json::array();
-      for (int x = 0; x < 3; ++x)
-        for (const double entry :
-             {motion.rotation(x, 0), motion.rotation(x, 1), motion.rotation(x, 2), motion.translation[x]})
-          matrix.push_back(entry);
-      for (const double entry : {0.0, 0.0, 0.0, 1.0}) matrix.push_back(entry);
-      moves.push_back({{"handle", scene.handles[handle].name}, {"matrix", std::move(matrix)}});
+      const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = motion.matrix();
+      const std::vector<double> matrix(rows.data(), rows.data() + rows.size());
+      moves.push_back({{"handle", scene.handles[handle].name}, {"matrix", matrix}});
     }
     json["edits"].push_back({{"increments", edit.increments}, {"moves", std::move(moves)}});
   }

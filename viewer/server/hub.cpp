@@ -226,7 +226,8 @@ void Hub::run(ViewSession& session) {
       jobs.swap(jobs_);
     }
     try {
-      session.advance(now() - std::exchange(last, now()));
+      const double time = now();
+      session.advance(time - std::exchange(last, time));
       for (const Job& job : jobs) follow(session, job);
       if (!jobs.empty()) session.advance(0);  // what they asked for shows at once
       publish(session);

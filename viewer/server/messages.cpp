@@ -18,11 +18,8 @@ static_assert(std::endian::native == std::endian::little, "numbers are sent as t
 // ---------------------------------------------------------------------------------------------------------------------
 // What a client says
 
-constexpr Index most_handles_in_scene = 64;
-
 std::vector<Index> nodes_of(const JsonFields& fields, const ViewModel& model) {
-  std::vector<Index> nodes = fields.integers("nodes", between(0, static_cast<double>(model.geometry.num_nodes() - 1)));
-  return nodes;
+  return fields.integers("nodes", between(0, static_cast<double>(model.geometry.num_nodes() - 1)));
 }
 
 Point point_of(const JsonFields& fields, const char* key) {
@@ -69,10 +66,10 @@ Pull pull_of(const JsonFields& fields) {
 
 EditScene scene_of(const JsonFields& fields, const ViewModel& model) {
   const JsonFields scene = fields.object("scene");
-  const auto count = static_cast<Index>(scene.objects("handles").size());
-  if (count > most_handles_in_scene)
+  const std::size_t count = scene.objects("handles").size();
+  if (count > EditSession::most_handles)  // before any of them is read
     scene.fail("handles",
-               "has " + std::to_string(count) + ", expected at most " + std::to_string(most_handles_in_scene));
+               "has " + std::to_string(count) + ", expected at most " + std::to_string(EditSession::most_handles));
   return read_edit_scene(scene, model.model.body);
 }
 
@@ -163,12 +160,8 @@ Json point_json(const Point& p) {
 }
 
 Json motion_json(const RigidMotion& motion) {
-  Json rows = Json::array();
-  for (int x = 0; x < 3; ++x) {
-    for (int y = 0; y < 3; ++y) rows.push_back(motion.rotation(x, y));
-    rows.push_back(motion.translation[x]);
-  }
-  return rows;
+  const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = motion.matrix().topRows<3>();
+  return std::vector<double>(rows.data(), rows.data() + rows.size());
 }
 
 /// As a user writes it.

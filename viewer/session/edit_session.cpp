@@ -9,7 +9,7 @@ namespace supple {
 
 namespace {
 
-constexpr std::size_t most_handles = 64, most_moments = 1000, most_edits = 1000;
+constexpr std::size_t most_moments = 1000, most_edits = 1000;
 constexpr double reach = 100;                           // how far a handle may go, in diagonals
 constexpr double turn_at_once = std::numbers::pi / 12;  // of a handle in a solve [rad]
 constexpr double way_at_once = 0.05;                    // of its centre, in diagonals
@@ -64,8 +64,7 @@ Index EditSession::add(HandleRegion region) {
       after.row(static_cast<Index>(k)) += model_->system.displacement(state(), samples[k]).transpose();
     added.motion = now_.reached.back() = RigidMotion::fit(before, after);
   }
-  settled_ = false;
-  attempts_ = 0;
+  unsettle();
   return added.id;
 }
 
@@ -83,8 +82,7 @@ void EditSession::move(Index id, const RigidMotion& motion, Grab grab) {
   if (grab == Grab::Yes) remember();
   moved.motion = motion;
   waypoints_.clear();
-  settled_ = false;
-  attempts_ = 0;
+  unsettle();
 }
 
 void EditSession::remove(Index id) {
@@ -93,18 +91,26 @@ void EditSession::remove(Index id) {
   now_.handles.erase(now_.handles.begin() + at);
   now_.reached.erase(now_.reached.begin() + at);
   regrasp();
-  settled_ = false;
-  attempts_ = 0;
+  unsettle();
+}
+
+EditSession::Moment EditSession::moment() const {
+  Moment moment = now_;
+  moment.q = state();
+  moment.settled = settled_;
+  return moment;
 }
 
 void EditSession::remember() {
   waypoints_.clear();
-  Moment moment = now_;
-  moment.q = state();
-  moment.settled = settled_;
-  past_.push_back(std::move(moment));
+  past_.push_back(moment());
   if (past_.size() > most_moments) past_.pop_front();
   future_.clear();
+}
+
+void EditSession::unsettle() {
+  settled_ = false;
+  attempts_ = 0;
 }
 
 void EditSession::restore(Moment moment) {
@@ -118,24 +124,16 @@ void EditSession::restore(Moment moment) {
 
 void EditSession::undo() {
   if (past_.empty()) return;
-  std::deque<Moment> future = std::move(future_);
-  Moment before = std::move(past_.back());
+  future_.push_back(moment());
+  restore(std::move(past_.back()));
   past_.pop_back();
-  remember();
-  future.push_back(std::move(past_.back()));
-  past_.pop_back();
-  future_ = std::move(future);
-  restore(std::move(before));
 }
 
 void EditSession::redo() {
   if (future_.empty()) return;
-  std::deque<Moment> future = std::move(future_);
-  Moment after = std::move(future.back());
-  future.pop_back();
-  remember();
-  future_ = std::move(future);
-  restore(std::move(after));
+  past_.push_back(moment());
+  restore(std::move(future_.back()));
+  future_.pop_back();
 }
 
 void EditSession::reset() {
@@ -207,8 +205,7 @@ void EditSession::load(const EditScene& scene) {
     waypoints_.push_back(last);
   }
   for (std::size_t k = 0; k < last.size(); ++k) now_.handles[k].motion = last[k];
-  settled_ = false;
-  attempts_ = 0;
+  unsettle();
 }
 
 SolveReport EditSession::solve() {

@@ -33,6 +33,8 @@ class EditSession {
  public:
   enum class Grab { No, Yes };  ///< whether a motion begins a drag: what undo goes back to
 
+  static constexpr std::size_t most_handles = 64;
+
   explicit EditSession(std::shared_ptr<const ViewModel> model);
 
   /// Makes a handle that begins where its nodes are now. Nodes that the model holds are left out.
@@ -83,8 +85,10 @@ class EditSession {
 
   EditHandle make(HandleRegion region);
   EditHandle& handle(Index id);
-  void remember();
+  Moment moment() const;  // all of the present
+  void remember();        // it, for undo
   void restore(Moment moment);
+  void unsettle();
   void regrasp();
   EditScene regions() const;
   /// Displacements of all nodes, right at the samples of handles.

@@ -1,6 +1,5 @@
 #include <core/check.hpp>
 #include <core/stopwatch.hpp>
-#include <physics/time/backward_difference.hpp>
 #include <physics/time/integrator_library.hpp>
 #include <viewer/session/scaled_system.hpp>
 #include <viewer/session/simulation_session.hpp>
@@ -16,7 +15,6 @@ namespace {
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr Index most_held = 100;                   // springs
 constexpr Index most_on_floor = 200;               // nodes: their rows of the basis are read in every evaluation
-constexpr Index estimate_every = 4;                // steps
 constexpr double reach = 100;                      // how far from the object a target may be, in diagonals
 constexpr double held_stiffness = 1e3;             // over λ₁ M, of all springs together
 constexpr StepControl control{.max_halvings = 3};  // a step that nobody has time for helps nobody
@@ -106,9 +104,7 @@ void SimulationSession::release(int client) {
 
 void SimulationSession::hold(const std::vector<Index>& nodes) {
   const ViewGeometry& geometry = model_->geometry;
-  for (const Index k : nodes)
-    require(k >= 0 && k < geometry.num_nodes(),
-            "node " + std::to_string(k) + " does not exist, expected 0 to " + std::to_string(geometry.num_nodes() - 1));
+  (void)geometry.in_mesh(nodes);  // are they there?
   held_ = nodes;
   std::ranges::sort(held_);
   held_.erase(std::unique(held_.begin(), held_.end()), held_.end());
@@ -147,7 +143,7 @@ StepOutcome SimulationSession::step() {
   } else {
     made_ = integrator_->energies().made();
     ++num_steps_;
-    if (num_steps_ % estimate_every == 0) estimate();
+    if (num_steps_ % MotionErrorEstimator::every == 0) estimate();
   }
   outcome.seconds = watch.seconds();
   return outcome;
@@ -168,18 +164,11 @@ double SimulationSession::outside_potential() const {
 }
 
 void SimulationSession::rebuild_integrator() {
-  using System = AnySystem<Matrix>;
   made_before_ += made_;
   made_ = 0;
   makes_energy_ = false;
-  const StepOptions options = step_options(settings_);
   integrator_.emplace(
-      system_, settings_.step,
-      [this, options](double h) { return make_integrator(settings_.integrator, system_, h, options); }, options.damping,
-      control,
-      [this, options](double h) {
-        return AnyIntegrator<System>(std::make_unique<BackwardEuler<System>>(system_, h, options));
-      });
+      make_controlled_integrator(settings_.integrator, system_, settings_.step, step_options(settings_), control));
   integrator_->balance(load_, state_);
 }
 

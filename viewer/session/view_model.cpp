@@ -44,6 +44,16 @@ ViewGeometry::ViewGeometry(const ReducedModel& model) {
       model.subspace);
 }
 
+std::vector<Index> ViewGeometry::in_mesh(const std::vector<Index>& some) const {
+  std::vector<Index> result;
+  for (const Index k : some) {
+    require(k >= 0 && k < num_nodes(),
+            "node " + std::to_string(k) + " does not exist, expected 0 to " + std::to_string(num_nodes() - 1));
+    result.push_back(nodes[k]);
+  }
+  return result;
+}
+
 ViewGeometry::Floats ViewGeometry::surface_displacements(VectorIn q) const {
   require_size("q", q.size(), basis.cols() * block);
   const Eigen::VectorXf coordinates = q.cast<float>();

@@ -33,6 +33,8 @@ struct ViewGeometry {
   explicit ViewGeometry(const ReducedModel& model);
 
   Index num_nodes() const { return static_cast<Index>(nodes.size()); }
+  /// Those nodes in the mesh. \throws std::invalid_argument for nodes that do not exist.
+  std::vector<Index> in_mesh(const std::vector<Index>& some) const;
   /// x − X of the surface's nodes, one a row, in the precision in which they are drawn. \param q  reduced coordinates.
   Floats surface_displacements(VectorIn q) const;
 };

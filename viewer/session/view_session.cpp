@@ -102,8 +102,11 @@ void ViewSession::apply_one(int, const request::Fix& fix) {
   simulation_.hold(fix.nodes);
 }
 void ViewSession::apply_one(int, const request::MakeHandle& make) {
-  (void)edit_.add(
-      {.name = make.name, .nodes = of_mesh(make.nodes), .samples = {}, .weight = {}, .movable = make.movable});
+  (void)edit_.add({.name = make.name,
+                   .nodes = model_->geometry.in_mesh(make.nodes),
+                   .samples = {},
+                   .weight = {},
+                   .movable = make.movable});
 }
 void ViewSession::apply_one(int, const request::MoveHandle& move) {
   edit_.move(move.handle, move.motion, move.grab ? EditSession::Grab::Yes : EditSession::Grab::No);
@@ -136,17 +139,6 @@ void ViewSession::apply_one(int, const request::ShowMode& show) {
 }
 void ViewSession::apply_one(int, const request::Load& load) {
   edit_.load(load.scene);
-}
-
-std::vector<Index> ViewSession::of_mesh(const std::vector<Index>& nodes) const {
-  std::vector<Index> result;
-  for (const Index k : nodes) {
-    require(k >= 0 && k < model_->geometry.num_nodes(), "node " + std::to_string(k) +
-                                                            " does not exist, expected 0 to " +
-                                                            std::to_string(model_->geometry.num_nodes() - 1));
-    result.push_back(model_->geometry.nodes[k]);
-  }
-  return result;
 }
 
 void ViewSession::advance(double wall) {

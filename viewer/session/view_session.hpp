@@ -81,7 +81,6 @@ class ViewSession {
   void advance_edit(double end);
   void step();
   void judge_edit();
-  std::vector<Index> of_mesh(const std::vector<Index>& nodes) const;
 
   void apply_one(int client, const request::Play&);
   void apply_one(int client, const request::Pause&);

@@ -49,6 +49,7 @@ TEST(RigidMotion, ComesFromAMatrixIfThatIsRigid) {
   matrix.topLeftCorner<3, 3>() = turn.rotation;
   matrix.topRightCorner<3, 1>() = turn.translation;
   EXPECT_TRUE(is_near(RigidMotion::from(matrix)(Point(1, 2, 3)), turn(Point(1, 2, 3)), 1e-12));
+  EXPECT_TRUE(turn.matrix().isApprox(matrix, 1e-15));
   Eigen::Matrix4d stretched = matrix, mirrored = matrix, broken = matrix;
   stretched(0, 0) *= 1.1;
   mirrored.col(0) *= -1;
