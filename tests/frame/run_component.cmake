@@ -16,6 +16,7 @@ set(traces_of_PNG "libpng|png\\.h")
 set(traces_of_GTest "gtest|gmock")
 set(traces_of_nlohmann_json "nlohmann|json\\.hpp")
 set(traces_of_CLI11 "/cli/")
+set(traces_of_Boost "boost")
 
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
@@ -41,6 +42,9 @@ foreach(expected "Eigen/Core" "libsupple_core")  # so that an empty list of head
 endforeach()
 string(TOLOWER "${log}" log)
 foreach(package IN LISTS HIDDEN)
+  if(NOT traces_of_${package})  # an empty expression matches anything
+    message(FATAL_ERROR "nobody has said what traces ${package} leaves")
+  endif()
   if(log MATCHES "[^ \n]*(${traces_of_${package}})[^ \n]*")
     message(SEND_ERROR "a consumer of ${COMPONENT} meets ${package}: ${CMAKE_MATCH_0}")
   endif()

@@ -82,6 +82,9 @@ TEST(ViewSessionTest, TakesStepsOneByOne) {
   EXPECT_FALSE(timed.session.playing());
   timed.session.advance(0);
   EXPECT_EQ(timed.session.frame().num_steps, 7);
+  for (int k = 0; k < 3; ++k) timed(request::Step{1000});  // they add up
+  timed.session.advance(0);
+  EXPECT_EQ(timed.session.frame().num_steps, 3007);
   EXPECT_THROW(timed(request::Step{0}), std::invalid_argument);
   EXPECT_THROW(timed(request::Step{1001}), std::invalid_argument);
 }

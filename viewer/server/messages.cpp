@@ -19,7 +19,11 @@ static_assert(std::endian::native == std::endian::little, "numbers are sent as t
 // What a client says
 
 std::vector<Index> nodes_of(const JsonFields& fields, const ViewModel& model) {
-  return fields.integers("nodes", between(0, static_cast<double>(model.geometry.num_nodes() - 1)));
+  const Index n = model.geometry.num_nodes();
+  std::vector<Index> nodes = fields.integers("nodes", between(0, static_cast<double>(n - 1)));
+  if (static_cast<Index>(nodes.size()) > n)  // what is read here is gone through again
+    fields.fail("nodes", "lists " + std::to_string(nodes.size()) + ", of which there are " + std::to_string(n));
+  return nodes;
 }
 
 Point point_of(const JsonFields& fields, const char* key) {

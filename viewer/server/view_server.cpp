@@ -249,15 +249,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
     }
     if (request.method() != http::verb::get && request.method() != http::verb::head)
       return refuse(http::status::method_not_allowed, "only GET and HEAD are answered");
-    const auto model = server_.hub.resources();
-    if (const auto file = server_.page.find(target.path); file != server_.page.end()) return send(file->second);
-    if (model) {
+    if (target.path == "/model.json" ||
+        target.path.starts_with("/model/")) {  // of no page, whatever its files are called
+      const auto model = server_.hub.resources();
+      if (!model) return refuse(http::status::service_unavailable, "the model is not ready yet");
       if (const auto array = model->find(target.path); array != model->end()) {
         model_ = model;
         return send(array->second);
       }
-    } else if (target.path == "/model.json" || target.path.starts_with("/model/")) {
-      return refuse(http::status::service_unavailable, "the model is not ready yet");
+    } else if (const auto file = server_.page.find(target.path); file != server_.page.end()) {
+      return send(file->second);
     }
     refuse(http::status::not_found, server_.page.empty() && target.path == "/" ? no_page : "there is nothing here");
   }

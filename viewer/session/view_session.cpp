@@ -78,7 +78,7 @@ void ViewSession::apply_one(int, const request::Step& step) {
   require(step.count >= 1 && step.count <= 1000,
           "count is " + std::to_string(step.count) + ", expected 1 to 1000 steps");
   set_playing(false);
-  if (mode_ == ViewMode::Simulate) steps_to_take_ = std::min<Index>(steps_to_take_ + step.count, 1000);
+  if (mode_ == ViewMode::Simulate) steps_to_take_ += step.count;
   if (mode_ == ViewMode::Modes) shown_mode_.time += static_cast<double>(step.count) * slowest_frame;
 }
 void ViewSession::apply_one(int, const request::SetMode& set) {
