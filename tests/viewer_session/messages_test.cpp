@@ -44,6 +44,15 @@ TEST(MessagesTest, RefusesWithAReasonThatNamesThePlace) {
   }
 }
 
+TEST(MessagesTest, RefusesMoreNodesThanThereAre) {
+  const auto model = clamped_view_model();
+  const auto fix = [&](Index count) {
+    return read_message(json{{"do", "fix"}, {"nodes", std::vector<Index>(count, 0)}}.dump(), *model);
+  };
+  EXPECT_NO_THROW((void)fix(model->geometry.num_nodes()));
+  EXPECT_THROW((void)fix(model->geometry.num_nodes() + 1), Refusal);
+}
+
 TEST(MessagesTest, TellsRefusedMessagesFromNone) {
   const auto model = clamped_view_model();
   for (const std::string& text :

@@ -20,13 +20,14 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// The small clamped bar, served with a page of two files.
+/// The small clamped bar, served with a page of two files, and a third that is called as the model is.
 class ViewServerTest : public testing::Test {
  protected:
   static Resources page() {
     return {{"/", {"text/html", "<html>"}},
             {"/index.html", {"text/html", "<html>"}},
-            {"/assets/page.js", {"text/javascript", "go()"}}};
+            {"/assets/page.js", {"text/javascript", "go()"}},
+            {"/model.json", {"application/json", "of the page"}}};
   }
   ViewServerTest() { server.serve(clamped_view_model()); }
 
