@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <fstream>
 #include <functional>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
@@ -25,11 +26,12 @@ std::string drain(int descriptor) {
 }
 
 struct Circumstances {
-  bool terminal = false;                 ///< that stderr goes to
-  const char* device = nullptr;          ///< that stdout goes to; null: into the outcome
-  std::size_t largest_file = 0;          ///< [bytes]; 0: as large as it likes
-  int signal = 0;                        ///< sent to it; 0: none
-  std::function<void(pid_t)> wait = {};  ///< called with the process's number before the signal is sent
+  bool terminal = false;         ///< that stderr goes to
+  const char* device = nullptr;  ///< that stdout goes to; null: into the outcome
+  std::size_t largest_file = 0;  ///< [bytes]; 0: as large as it likes
+  int signal = 0;                ///< sent to it; 0: none
+  /// Called with the process's number and its stdout before the signal is sent.
+  std::function<void(pid_t, int)> wait = {};
 };
 
 Outcome run(const Arguments& arguments, const std::filesystem::path& folder, const Circumstances& given = {}) {
@@ -65,7 +67,7 @@ Outcome run(const Arguments& arguments, const std::filesystem::path& folder, con
   Outcome outcome;
   std::thread reader([&] { outcome.err = drain(err[0]); });
   if (given.signal != 0) {
-    given.wait(child);
+    given.wait(child, out[0]);
     kill(child, given.signal);
     kill(child, SIGCONT);
   }
@@ -116,11 +118,19 @@ Outcome run_supple_with_largest_file(const Arguments& arguments, const std::file
 }
 Outcome run_supple_until_signal(const Arguments& arguments, const std::filesystem::path& folder, int signal,
                                 std::chrono::microseconds after) {
-  return run(arguments, folder, {.signal = signal, .wait = [&](pid_t) { std::this_thread::sleep_for(after); }});
+  return run(arguments, folder, {.signal = signal, .wait = [&](pid_t, int) { std::this_thread::sleep_for(after); }});
 }
 Outcome run_supple_until_signal_while_writing(const Arguments& arguments, const std::filesystem::path& folder,
                                               int signal) {
-  return run(arguments, folder, {.signal = signal, .wait = [&](pid_t child) { hold_while_writing(child, folder); }});
+  return run(arguments, folder,
+             {.signal = signal, .wait = [&](pid_t child, int) { hold_while_writing(child, folder); }});
+}
+Outcome run_supple_until_signal_once_it_prints(const Arguments& arguments, const std::filesystem::path& folder,
+                                               int signal) {
+  return run(arguments, folder, {.signal = signal, .wait = [](pid_t, int out) {
+                                   pollfd printed{out, POLLIN, 0};
+                                   (void)poll(&printed, 1, 60'000);  // [ms]
+                                 }});
 }
 
 SuppleProcess::SuppleProcess() {

@@ -37,6 +37,10 @@ Outcome run_supple_until_signal(const Arguments& arguments, const std::filesyste
 Outcome run_supple_until_signal_while_writing(const Arguments& arguments, const std::filesystem::path& folder,
                                               int signal);
 
+/// The same, sent `signal` as soon as it has printed something.
+Outcome run_supple_until_signal_once_it_prints(const Arguments& arguments, const std::filesystem::path& folder,
+                                               int signal);
+
 /// A fresh folder for each test, removed afterwards.
 class SuppleProcess : public testing::Test {
  protected:

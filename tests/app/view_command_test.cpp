@@ -25,7 +25,7 @@ class ViewCommandTest : public SuppleProcess {
 
 TEST_F(ViewCommandTest, PrintsItsAddressAndServesUntilASignal) {
   const auto begin = std::chrono::steady_clock::now();
-  const Outcome outcome = run_supple_until_signal(small_mesh, folder, SIGTERM, 3s);
+  const Outcome outcome = run_supple_until_signal_once_it_prints(small_mesh, folder, SIGTERM);
   EXPECT_EQ(outcome.exit_code, 128 + SIGTERM);
   EXPECT_THAT(outcome.out, StartsWith("http://127.0.0.1:"));
   EXPECT_EQ(outcome.err, "");
@@ -43,7 +43,7 @@ TEST_F(ViewCommandTest, EndsWhileItStillReduces) {
 TEST_F(ViewCommandTest, PrintsTheTokenWhereItListensToOthers) {
   Arguments open = small_mesh;
   open.insert(open.end(), {"--listen", "0.0.0.0"});
-  EXPECT_THAT(run_supple_until_signal(open, folder, SIGTERM, 1s).out, HasSubstr("/?token="));
+  EXPECT_THAT(run_supple_until_signal_once_it_prints(open, folder, SIGTERM).out, HasSubstr("/?token="));
 }
 
 TEST_F(ViewCommandTest, RefusesWhatItCannotServe) {
@@ -62,7 +62,8 @@ TEST_F(ViewCommandTest, TakesOptionsOfMeshesForMeshesAlone) {
                 .exit_code,
             0);
   expect_refusal({"view", "bar.supple", "--page", "page", "--young", "1e6"}, {"--young", "for meshes"});
-  const Outcome outcome = run_supple_until_signal({"view", "bar.supple", "--page", "page"}, folder, SIGTERM, 1s);
+  const Outcome outcome =
+      run_supple_until_signal_once_it_prints({"view", "bar.supple", "--page", "page"}, folder, SIGTERM);
   EXPECT_EQ(outcome.exit_code, 128 + SIGTERM);
   EXPECT_EQ(outcome.err, "");
 }
