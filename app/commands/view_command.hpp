@@ -19,6 +19,7 @@ struct ViewCommand : ProblemOptions {
   std::string listen = "127.0.0.1";
   std::uint16_t port = 0;                     ///< 0: a free one
   std::optional<std::filesystem::path> page;  ///< folder of the built page; none: where it is built or installed
+  std::optional<std::filesystem::path> replay, beside;  ///< folders or trajectory files of `supple simulate`
   int threads = 0;
 
   void declare(CLI::App& app);  ///< adds the subcommand, which writes into this object and calls run()

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <cmath>
 #include <unistd.h>
 
@@ -64,17 +63,6 @@ void print_stages(std::FILE* out, const std::vector<std::pair<std::string, doubl
   }
   if (rest >= 0.0005) print("other", rest);
   print("total", total);
-}
-
-std::string exact(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
-std::string shown(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
 }
 
 std::string shown_percent(double share, int digits) {

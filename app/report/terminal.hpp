@@ -2,6 +2,7 @@
 /// \file Output on a terminal: a progress bar, tables, one-line messages.
 
 #include <core/progress.hpp>
+#include <core/text.hpp>
 
 #include <cstdio>
 #include <string>
@@ -25,10 +26,6 @@ void print_rows(std::FILE* out, std::string_view title, const Rows& rows);
 /// Stages in order, what they leave of the total, and the total.
 void print_stages(std::FILE* out, const std::vector<std::pair<std::string, double>>& seconds, double total);
 
-/// The shortest text that gives back the same double.
-std::string exact(double value);
-/// The shortest text of so many significant digits: "0.0123", "1.5e+06".
-std::string shown(double value, int digits = 4);
 std::string shown_percent(double share, int digits = 3);
 std::string shown_count(long long count);       ///< "95 142"
 std::string shown_iterations(long long count);  ///< "1 iteration", "2 iterations"

@@ -1,10 +1,10 @@
 #include <core/check.hpp>
 #include <core/output_file.hpp>
+#include <core/text.hpp>
 #include <io/frames/vtu_writer.hpp>
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 
@@ -188,9 +188,7 @@ void VtuSeries::write_list() const {
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  "
       "<Collection>\n";
   for (const auto& [time, name] : frames_) {
-    char digits[32];
-    const std::string timestep(digits, std::to_chars(digits, digits + sizeof digits, time).ptr);
-    xml += "    <DataSet timestep=\"" + timestep + "\" part=\"0\" file=\"" + escaped(name) + "\"/>\n";
+    xml += "    <DataSet timestep=\"" + exact(time) + "\" part=\"0\" file=\"" + escaped(name) + "\"/>\n";
   }
   write_file(pvd_, xml + "  </Collection>\n</VTKFile>\n");
 }

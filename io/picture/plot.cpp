@@ -1,11 +1,11 @@
 #include <core/check.hpp>
 #include <core/output_file.hpp>
+#include <core/text.hpp>
 #include <io/picture/plot.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -28,11 +28,6 @@ namespace {
 /// ones first.
 constexpr std::array palette{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#4d4d4d"};
 constexpr std::array point_types{7, 5, 9, 13, 11, 6, 4};
-
-std::string text(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
 
 /// A text in single quotes, inside which gnuplot replaces nothing.
 std::string gnuplot_string(std::string_view words) {
@@ -179,14 +174,14 @@ Axis with_ticks(const Plot& plot, Axis axis, Vector PlotSeries::*values) {
 std::string axis_commands(const char* name, const Axis& axis) {
   const std::string x(name);
   std::string commands = "set " + x + "label " + gnuplot_string(axis.label) + " noenhanced\n";
-  commands +=
-      "set " + x + "range [" + (axis.low ? text(*axis.low) : "*") + ":" + (axis.high ? text(*axis.high) : "*") + "]\n";
+  commands += "set " + x + "range [" + (axis.low ? exact(*axis.low) : "*") + ":" +
+              (axis.high ? exact(*axis.high) : "*") + "]\n";
   if (axis.scale == Scale::Log && axis.ticks.empty())
     commands += "set logscale " + x + " 10\nset format " + x + " '10^{%L}'\nset m" + x + "tics 10\n";
   else
     commands += (axis.scale == Scale::Log ? "set logscale " + x + "\n" : "") + "set format " + x + " '%.6g'\n";
   std::string ticks;
-  for (const double tick : axis.ticks) ticks += (ticks.empty() ? "" : ", ") + text(tick);
+  for (const double tick : axis.ticks) ticks += (ticks.empty() ? "" : ", ") + exact(tick);
   if (!ticks.empty()) commands += "set " + x + "tics (" + ticks + ")\n";
   return commands;
 }
@@ -236,7 +231,7 @@ std::string script(const Plot& plot, const std::string& terminal) {
     for (Index i = 0; i < series.x.size(); ++i) {
       // An empty line interrupts the curve.
       if (shown(plot, series.x[i], series.y[i])) {
-        commands += text(series.x[i]) + " " + text(series.y[i]);
+        commands += exact(series.x[i]) + " " + exact(series.y[i]);
         if (!series.labels.empty()) commands += " " + data_string(series.labels[static_cast<std::size_t>(i)]);
       }
       commands += "\n";

@@ -1,5 +1,6 @@
 #include <core/check.hpp>
 #include <core/output_file.hpp>
+#include <core/text.hpp>
 #include <io/table/csv.hpp>
 
 #include <algorithm>
@@ -84,8 +85,7 @@ CsvTable::CsvTable(std::vector<Column> columns) : columns_(std::move(columns)) {
 }
 
 std::string CsvTable::to_cell(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+  return exact(value);
 }
 
 void CsvTable::add_cells(std::vector<std::string> cells) {

@@ -1,12 +1,12 @@
 #include <core/check.hpp>
 #include <core/output_file.hpp>
+#include <core/text.hpp>
 #include <io/text/json_fields.hpp>
 #include <io/text/unit.hpp>
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <numeric>
 #include <set>
@@ -18,16 +18,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string to_text(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 /// A value as it may stand in a message.
 std::string shown(const Json& value) {
   if (value.is_array()) return "a list of " + std::to_string(value.size());
   if (value.is_object()) return "an object";
-  if (value.is_number_float()) return to_text(value.get<double>());
+  if (value.is_number_float()) return exact(value.get<double>());
   if (!value.is_string()) return value.dump();
   std::string text = value.get<std::string>();
   if (text.size() > 60) {
@@ -56,10 +51,10 @@ std::string position(std::string_view text, std::size_t byte) {
 }  // namespace
 
 std::string Interval::to_string() const {
-  const std::string from = (low_open ? "> " : ">= ") + to_text(low), to = (high_open ? "< " : "<= ") + to_text(high);
+  const std::string from = (low_open ? "> " : ">= ") + exact(low), to = (high_open ? "< " : "<= ") + exact(high);
   if (low == -infinity) return high == infinity ? "any number" : to;
   if (high == infinity) return from;
-  return low_open || high_open ? from + " and " + to : "between " + to_text(low) + " and " + to_text(high);
+  return low_open || high_open ? from + " and " + to : "between " + exact(low) + " and " + exact(high);
 }
 
 struct JsonFields::Document {

@@ -8,7 +8,7 @@ export default defineConfig({
     modulePreload: false,
     // One script and one style sheet, which a standalone page takes into itself.
     cssCodeSplit: false,
-    rolldownOptions: {output: {codeSplitting: false, entryFileNames: 'page.js', assetFileNames: 'page[extname]'}},
+    rollupOptions: {output: {inlineDynamicImports: true, entryFileNames: 'page.js', assetFileNames: 'page[extname]'}},
     chunkSizeWarningLimit: 1200,
   },
 });

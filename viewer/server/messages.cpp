@@ -133,6 +133,7 @@ const std::array entries{
             return Request(request::ShowMode{fields.integer("mode", non_negative),
                                              fields.number_or("amplitude", 0.1, between(0, 1))});
           }},
+    Entry{"seek", [](Fields fields, Model) -> Message { return Request(request::Seek{fields.number("time")}); }},
     Entry{"load",
           [](Fields fields, Model model) -> Message { return Request(request::Load{scene_of(fields, model)}); }}};
 
@@ -290,7 +291,6 @@ std::string frame_bytes(const ViewFrame& frame, std::uint32_t number, StreamKind
   const auto put = [&](std::size_t offset, auto value) { std::memcpy(&bytes[offset], &value, sizeof value); };
   const auto real = [&](std::size_t offset, double value) { put(offset, static_cast<float>(value)); };
   const auto count = [&](std::size_t offset, Index value) { put(offset, static_cast<std::uint32_t>(value)); };
-  put(0, static_cast<std::uint32_t>(what));
   put(4, number);
   put(8, frame.time);
   put(16, frame.kinetic);
@@ -305,14 +305,22 @@ std::string frame_bytes(const ViewFrame& frame, std::uint32_t number, StreamKind
   real(68, frame.error);
   count(72, frame.playing | frame.falls_behind << 1 | frame.missed << 2 | frame.beyond_training << 3);
   count(80, frame.num_steps);
+  Index num_floats = 0;
   const auto append = [&](const auto& floats) {
-    count(76, floats.size());
+    num_floats += floats.size();
     bytes.append(reinterpret_cast<const char*>(floats.data()), static_cast<std::size_t>(floats.size()) * sizeof(float));
   };
-  if (what == StreamKind::Coordinates)
+  std::uint32_t content = static_cast<std::uint32_t>(what);
+  if (!frame.displacements.empty()) {
+    content = frame.displacements.size() == 1 ? 2 : 3;
+    for (const auto& displacements : frame.displacements) append(displacements);
+  } else if (what == StreamKind::Coordinates) {
     append(Eigen::VectorXf(frame.q.cast<float>()));
-  else
+  } else {
     append(geometry.surface_displacements(frame.q));
+  }
+  put(0, content);
+  count(76, num_floats);
   return bytes;
 }
 

@@ -61,6 +61,13 @@ std::string described(const ViewModel& model, Index num_modes) {
                               {"integrators", integrators().names()},
                               {"full_error", full_error(model.model)},
                               {"notes", model.notes}};
+  json["recording"] = nullptr;
+  if (!model.recordings.empty()) {
+    const auto [begin, end] = common_time(model.recordings);
+    json["recording"] = {
+        {"begin", begin}, {"duration", end - begin}, {"frames", model.recordings.front().num_frames()}};
+    for (const ViewRecording& recording : model.recordings) json["recording"]["names"].push_back(recording.name);
+  }
   for (Index k = 0; k < num_modes; ++k) json["frequencies"].push_back(model.frequency(k));
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -43,8 +43,9 @@ constexpr int silence = 60;                         // of a client's machine, un
 constexpr auto farewell = 300ms;                    // for clients to take leave
 
 constexpr std::string_view no_page =
-    "The page of `supple view` was not built: npm was missing. Install it (apt-get install npm) and build the target\n"
-    "viewer_page, or name a built page by --page. The session at /session runs, and speaks docs/viewer-protocol.md.\n";
+    "The page of `supple view` was not built. Build the target viewer_page, which says what is missing (npm, or the\n"
+    "packages that it fetches), or name a built page by --page. The session at /session runs, and speaks\n"
+    "docs/viewer-protocol.md.\n";
 
 std::string machine_name() {
   char name[256] = {};

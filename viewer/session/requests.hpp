@@ -14,15 +14,15 @@
 namespace supple {
 
 /// What a session shows.
-enum class ViewMode { Simulate, Edit, Modes };
+enum class ViewMode { Simulate, Edit, Modes, Replay };
 template <>
 inline constexpr std::array names_of<ViewMode>{Named{ViewMode::Simulate, "simulate"}, Named{ViewMode::Edit, "edit"},
-                                               Named{ViewMode::Modes, "modes"}};
+                                               Named{ViewMode::Modes, "modes"}, Named{ViewMode::Replay, "replay"}};
 
 namespace request {
 struct Play {};
 struct Pause {};
-struct Reset {};  ///< to rest, in both modes
+struct Reset {};  ///< to rest, both simulation and edit; modes and replay: to the beginning
 struct Step {     ///< pauses, takes so many steps
   Index count = 1;
 };
@@ -58,6 +58,9 @@ struct ShowMode {
   Index mode = 0;          ///< counts the flexible ones
   double amplitude = 0.1;  ///< share of the diagonal, 0 to 1
 };
+struct Seek {
+  double time = 0;  ///< of the recording [s]
+};
 struct Load {
   EditScene scene;
 };
@@ -66,6 +69,6 @@ struct Load {
 using Request =
     std::variant<request::Play, request::Pause, request::Reset, request::Step, request::SetMode, request::Set,
                  request::PullAt, request::Release, request::Fix, request::MakeHandle, request::MoveHandle,
-                 request::RemoveHandle, request::Undo, request::Redo, request::ShowMode, request::Load>;
+                 request::RemoveHandle, request::Undo, request::Redo, request::ShowMode, request::Seek, request::Load>;
 
 }  // namespace supple

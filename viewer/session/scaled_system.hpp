@@ -2,6 +2,7 @@
 /// \file System with elastic forces that are stiffer or softer by a factor.
 
 #include <core/check.hpp>
+#include <core/text.hpp>
 #include <physics/system/any_system.hpp>
 
 #include <cmath>
@@ -18,8 +19,7 @@ class ScaledSystem {
 
   ScaledSystem(AnySystem<Matrix> system, double factor)
       : system_(std::move(system)), factor_(factor), rest_stiffness_(factor * system_.rest_stiffness()) {
-    require(std::isfinite(factor) && factor > 0,
-            "the factor on the stiffness is " + std::to_string(factor) + ", expected > 0");
+    require(std::isfinite(factor) && factor > 0, "the factor on the stiffness is " + shown(factor) + ", expected > 0");
   }
 
   Index dim() const { return system_.dim(); }

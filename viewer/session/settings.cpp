@@ -1,4 +1,5 @@
 #include <core/check.hpp>
+#include <core/text.hpp>
 #include <physics/time/integrator_library.hpp>
 #include <viewer/session/settings.hpp>
 
@@ -10,8 +11,7 @@ namespace {
 
 void require_between(const char* name, double value, double low, double high, const char* unit = "") {
   require(value >= low && value <= high,  // false for NaN
-          std::string(name) + " is " + std::to_string(value) + unit + ", expected " + std::to_string(low) + " to " +
-              std::to_string(high) + unit);
+          std::string(name) + " is " + shown(value) + unit + ", expected " + shown(low) + " to " + shown(high) + unit);
 }
 
 }  // namespace

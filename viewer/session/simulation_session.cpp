@@ -1,5 +1,6 @@
 #include <core/check.hpp>
 #include <core/stopwatch.hpp>
+#include <core/text.hpp>
 #include <physics/time/integrator_library.hpp>
 #include <viewer/session/scaled_system.hpp>
 #include <viewer/session/simulation_session.hpp>
@@ -87,8 +88,8 @@ void SimulationSession::pull(int client, const Pull& pull) {
           "the target is more than 100 diagonals away from the object");
   const double softness = model_->softness(), stiffness = pull.stiffness.value_or(default_pull_stiffness(*model_));
   require(stiffness >= 1e-6 * softness && stiffness <= 1e6 * softness,
-          "the stiffness of a pull is " + std::to_string(stiffness) + " N/m, expected " +
-              std::to_string(1e-6 * softness) + " to " + std::to_string(1e6 * softness));
+          "the stiffness of a pull is " + shown(stiffness) + " N/m, expected " + shown(1e-6 * softness) + " to " +
+              shown(1e6 * softness));
   const auto before = pulls_.find(client);
   const bool same = before != pulls_.end() && before->second.node == pull.node && before->second.stiffness == stiffness;
   pulls_[client] = {pull.node, pull.target, stiffness};

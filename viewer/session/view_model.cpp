@@ -4,6 +4,7 @@
 #include <viewer/session/view_model.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <numbers>
 
 namespace supple {
@@ -64,10 +65,44 @@ ViewGeometry::Floats ViewGeometry::surface_displacements(VectorIn q) const {
   return u;
 }
 
-ViewModel::ViewModel(ReducedModel reduced, std::string title, std::vector<std::string> what_to_know)
+namespace {
+
+void check_recordings(const std::vector<ViewRecording>& recordings, const ViewGeometry& geometry) {
+  require(recordings.size() <= 2, "there are " + std::to_string(recordings.size()) + " recordings, expected at most 2");
+  for (const ViewRecording& recording : recordings) {
+    require(recording.num_frames() > 0, "recording '" + recording.name + "' has no frames");
+    require(
+        recording.frames.rows() == recording.num_frames() && recording.frames.cols() == 3 * geometry.num_surface_nodes,
+        "recording '" + recording.name + "' has " + std::to_string(recording.frames.rows()) + " frames of " +
+            std::to_string(recording.frames.cols()) + " numbers, expected " + std::to_string(recording.num_frames()) +
+            " of " + std::to_string(3 * geometry.num_surface_nodes));
+    require(std::ranges::is_sorted(recording.time, std::less_equal()) && recording.time.allFinite() &&
+                recording.frames.allFinite(),
+            "recording '" + recording.name + "' has times that do not ascend or numbers that are not finite");
+  }
+  if (recordings.empty()) return;
+  const auto [begin, end] = common_time(recordings);
+  require(begin <= end, "the recordings '" + recordings.front().name + "' and '" + recordings.back().name +
+                            "' have no time in common");
+}
+
+}  // namespace
+
+std::pair<double, double> common_time(const std::vector<ViewRecording>& recordings) {
+  std::pair span{recordings.front().time[0], recordings.front().time.tail<1>()[0]};
+  for (const ViewRecording& recording : recordings) {
+    span.first = std::max(span.first, recording.time[0]);
+    span.second = std::min(span.second, recording.time.tail<1>()[0]);
+  }
+  return span;
+}
+
+ViewModel::ViewModel(ReducedModel reduced, std::string title, std::vector<std::string> what_to_know,
+                     std::vector<ViewRecording> to_play)
     : model(std::move(reduced)),
       name(std::move(title)),
       notes(std::move(what_to_know)),
+      recordings(std::move(to_play)),
       geometry(model),
       system(model.system(default_precision(model))),
       estimator(error_estimator(model)),
@@ -76,6 +111,7 @@ ViewModel::ViewModel(ReducedModel reduced, std::string title, std::vector<std::s
       box(bounding_box(rest())),
       diagonal(box.diagonal()) {
   if (modes.num_zero == modes.omega.size()) throw SolverError("the model has no flexible mode");
+  check_recordings(recordings, geometry);
 }
 
 double ViewModel::frequency(Index k) const {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace supple {
@@ -39,11 +40,24 @@ struct ViewGeometry {
   Floats surface_displacements(VectorIn q) const;
 };
 
+/// A motion that was computed before, as far as it is drawn.
+struct ViewRecording {
+  std::string name;             ///< for people, such as "full"
+  Vector time;                  ///< of each frame, ascending [s]
+  ViewGeometry::Floats frames;  ///< frames × (3 · surface nodes), interleaved: x − X [m]
+
+  Index num_frames() const { return time.size(); }
+};
+/// First and last time that all recordings have [s]. \pre there is one.
+std::pair<double, double> common_time(const std::vector<ViewRecording>& recordings);
+
 /// A model with what sessions and pages ask of it again and again; fixed from the start, so that several threads may read it.
 struct ViewModel {
   ReducedModel model;
   std::string name;                ///< for titles
   std::vector<std::string> notes;  ///< what a user should know of it
+  /// Motions of the same mesh to play again: none, one, or one and what it ought to have been.
+  std::vector<ViewRecording> recordings;
   ViewGeometry geometry;
   AnySystem<Matrix> system;
   std::optional<ErrorEstimator> estimator;  ///< if the model has an indicator
@@ -53,7 +67,9 @@ struct ViewModel {
   double diagonal = 0;  ///< of the box [m]
 
   /// \throws SolverError for a model that has no flexible mode.
-  ViewModel(ReducedModel model, std::string name, std::vector<std::string> notes = {});
+  /// \throws std::invalid_argument for recordings of another surface, without frames or without a time in common.
+  ViewModel(ReducedModel model, std::string name, std::vector<std::string> notes = {},
+            std::vector<ViewRecording> recordings = {});
 
   Index dim() const { return system.dim(); }
   const Points& rest() const { return node_positions(model.body); }  ///< of all nodes of the mesh [m]

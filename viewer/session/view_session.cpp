@@ -1,5 +1,6 @@
 #include <core/check.hpp>
 #include <core/stopwatch.hpp>
+#include <core/text.hpp>
 #include <viewer/session/view_session.hpp>
 
 #include <algorithm>
@@ -36,6 +37,9 @@ ViewSession::ViewSession(std::shared_ptr<const ViewModel> model, Clock clock)
       edit_(model_),
       edit_error_(unknown) {
   shown_mode_.shape = unit_shape(*model_, 0);
+  if (model_->recordings.empty()) return;
+  replay_.emplace(model_);
+  mode_ = ViewMode::Replay;
 }
 
 void ViewSession::join(int client) {
@@ -58,7 +62,8 @@ void ViewSession::apply(int client, const Request& request) {
 }
 
 void ViewSession::apply_one(int, const request::Play&) {
-  set_playing(mode_ != ViewMode::Edit);
+  require(mode_ != ViewMode::Edit, "there is nothing to play in the mode edit");
+  set_playing(true);
   steps_to_take_ = 0;
 }
 void ViewSession::apply_one(int, const request::Pause&) {
@@ -66,22 +71,31 @@ void ViewSession::apply_one(int, const request::Pause&) {
   steps_to_take_ = 0;
 }
 void ViewSession::apply_one(int, const request::Reset&) {
-  simulation_.reset();
-  edit_.reset();
-  shown_mode_.time = 0;
   steps_to_take_ = 0;
-  last_step_ = last_solve_ = {};
-  told_of_energy_ = false;
-  judge_edit();
+  if (mode_ == ViewMode::Modes) {
+    shown_mode_.time = 0;
+  } else if (mode_ == ViewMode::Replay) {
+    replay_->seek(replay_->begin());
+  } else {
+    simulation_.reset();
+    edit_.reset();
+    pace_ = {};
+    last_step_ = last_solve_ = {};
+    told_of_energy_ = false;
+    judge_edit();
+  }
 }
 void ViewSession::apply_one(int, const request::Step& step) {
   require(step.count >= 1 && step.count <= 1000,
           "count is " + std::to_string(step.count) + ", expected 1 to 1000 steps");
+  require(mode_ != ViewMode::Edit, "there are no steps in the mode edit");
   set_playing(false);
   if (mode_ == ViewMode::Simulate) steps_to_take_ += step.count;
+  if (mode_ == ViewMode::Replay) replay_->step(step.count);
   if (mode_ == ViewMode::Modes) shown_mode_.time += static_cast<double>(step.count) * slowest_frame;
 }
 void ViewSession::apply_one(int, const request::SetMode& set) {
+  require(set.mode != ViewMode::Replay || replay_.has_value(), "there is no recording to play");
   mode_ = set.mode;
   steps_to_take_ = 0;
 }
@@ -129,13 +143,17 @@ void ViewSession::apply_one(int, const request::ShowMode& show) {
           "mode " + std::to_string(show.mode) + " does not exist, expected 0 to " +
               std::to_string(model_->num_flexible_modes() - 1));
   require(show.amplitude >= 0 && show.amplitude <= 1,
-          "amplitude is " + std::to_string(show.amplitude) + ", expected 0 to 1 of the diagonal");
+          "amplitude is " + shown(show.amplitude) + ", expected 0 to 1 of the diagonal");
   if (show.mode != shown_mode_.number) {
     shown_mode_.shape = unit_shape(*model_, show.mode);
     shown_mode_.time = 0;
   }
   shown_mode_.number = show.mode;
   shown_mode_.amplitude = show.amplitude;
+}
+void ViewSession::apply_one(int, const request::Seek& seek) {
+  require(replay_.has_value(), "there is no recording to seek in");
+  replay_->seek(seek.time);
 }
 void ViewSession::apply_one(int, const request::Load& load) {
   edit_.load(load.scene);
@@ -145,6 +163,10 @@ void ViewSession::advance(double wall) {
   const double end = clock_() + budget;
   if (mode_ == ViewMode::Modes && playing()) {
     shown_mode_.time += std::clamp(wall, 0.0, 0.25) * settings().speed;
+    ++moments_;
+  }
+  if (mode_ == ViewMode::Replay && playing()) {
+    replay_->pass(std::clamp(wall, 0.0, 0.25) * settings().speed);
     ++moments_;
   }
   if (mode_ == ViewMode::Edit) advance_edit(end);
@@ -173,8 +195,7 @@ void ViewSession::step() {
   const StepOutcome outcome = simulation_.step();
   ++moments_;
   if (!outcome.failure.empty()) {
-    warnings_.push_back("the simulation pauses at " + std::to_string(simulation_.state().time) +
-                        " s: " + outcome.failure);
+    warnings_.push_back("the simulation pauses at " + shown(simulation_.state().time) + " s: " + outcome.failure);
     set_playing(false);
     steps_to_take_ = 0;
     ++changes_;
@@ -214,8 +235,11 @@ void ViewSession::judge_edit() {
   if (!edit_.settled()) return;
   const double held = edit_.held();
   if (held > held_over_diagonal_at_most && !told_of_handles_)
-    warnings_.push_back("the subspace does not follow the handles: the shape may be off by as much as they hold, " +
-                        std::to_string(std::lround(100 * held)) + " % of the diagonal");
+    warnings_.push_back(
+        "the reduced model cannot take the shape that these handles ask for, and misses them by about " +
+        std::to_string(std::lround(100 * held)) +
+        " % of the diagonal: the full object would look different by as much. Smaller motions, fewer or "
+        "smaller handles, or a model of more modes are followed better");
   told_of_handles_ = held > held_over_diagonal_at_most;
 }
 
@@ -227,18 +251,14 @@ double ViewSession::until_due() const {
     case ViewMode::Edit:
       return edit_.settled() ? infinity : 0;
     case ViewMode::Modes:
+    case ViewMode::Replay:
       return playing() ? slowest_frame : infinity;
   }
   return infinity;
 }
 
 ViewFrame ViewSession::frame() const {
-  ViewFrame frame{.steps_per_second = pace_.steps_per_second(),
-                  .speed = pace_.speed(),
-                  .error = unknown,
-                  .playing = playing(),
-                  .falls_behind = pace_.falls_behind(),
-                  .num_steps = simulation_.num_steps()};
+  ViewFrame frame{.error = unknown, .playing = playing()};
   const auto took = [&](const auto& last) {
     frame.residual = last.report.residual;
     frame.iterations = last.report.iterations;
@@ -255,6 +275,10 @@ ViewFrame ViewSession::frame() const {
       frame.error = simulation_.estimated_error();
       frame.beyond_training = simulation_.beyond_training();
       frame.q = simulation_.state().u;
+      frame.num_steps = simulation_.num_steps();
+      frame.steps_per_second = pace_.steps_per_second();
+      frame.speed = pace_.speed();
+      frame.falls_behind = pace_.falls_behind();
       took(last_step_);
       break;
     case ViewMode::Edit:
@@ -275,6 +299,11 @@ ViewFrame ViewSession::frame() const {
       frame.elastic = 0.5 * (omega * frame.q).squaredNorm();
       break;
     }
+    case ViewMode::Replay:
+      frame.time = replay_->time();
+      frame.error = replay_->difference();
+      for (Index k = 0; k < replay_->num_recordings(); ++k) frame.displacements.push_back(replay_->displacements(k));
+      break;
   }
   return frame;
 }

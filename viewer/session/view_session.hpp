@@ -3,6 +3,7 @@
 
 #include <viewer/session/edit_session.hpp>
 #include <viewer/session/pacemaker.hpp>
+#include <viewer/session/replay.hpp>
 #include <viewer/session/requests.hpp>
 #include <viewer/session/simulation_session.hpp>
 
@@ -22,15 +23,18 @@ struct ViewFrame {
   Index iterations = 0;
   double seconds = 0;                      ///< that it took
   double steps_per_second = 0, speed = 0;  ///< of late; see Pacemaker
-  double error = 0;                        ///< estimated, over the size of the motion; NaN where there is no telling
+  /// Estimated, over the size of the motion, or in a replay measured; NaN where there is no telling.
+  double error = 0;
   bool playing = false, falls_behind = false, missed = false, beyond_training = false;
   Index num_steps = 0;
-  Vector q = {};
+  Vector q = {};  ///< but in a replay
+  /// x − X of the surface's nodes of each recording that is played [m]; in a replay alone.
+  std::vector<ViewGeometry::Floats> displacements = {};
 };
 
 /// One object and all that acts on it, for any number of clients: each sees what all do, the last word counts, and each has a
 /// pull of its own. Simulation and editing have a state each. Time passes by advance() alone; there are no threads, no network
-/// and, but for the budget of an advance(), no clock. Begins paused, at rest, in simulation.
+/// and, but for the budget of an advance(), no clock. Begins paused, at rest, in simulation; with recordings it plays these.
 ///
 ///     ViewSession session(std::make_shared<const ViewModel>(load_model("bar.supple"), "bar"));
 ///     session.join(/*client=*/1);
@@ -97,17 +101,19 @@ class ViewSession {
   void apply_one(int client, const request::Undo&);
   void apply_one(int client, const request::Redo&);
   void apply_one(int client, const request::ShowMode&);
+  void apply_one(int client, const request::Seek&);
   void apply_one(int client, const request::Load&);
 
   std::shared_ptr<const ViewModel> model_;
   Clock clock_;
   SimulationSession simulation_;
   EditSession edit_;
+  std::optional<Replay> replay_;
   Pacemaker pace_;
 
   std::vector<int> clients_;
   ViewMode mode_ = ViewMode::Simulate;
-  std::array<bool, 3> playing_{false, false, true};
+  std::array<bool, 4> playing_{false, false, true, true};
   Index steps_to_take_ = 0;  // that somebody asked for one by one
   Index moments_ = 1, changes_ = 1;
   std::vector<std::string> warnings_;
