@@ -137,7 +137,8 @@ TEST(GuardTest, KnowsItsNamesAndNoOthers) {
     EXPECT_FALSE(guard.allows_host(host, "127.0.0.1")) << host;
   EXPECT_TRUE(guard.allows_host("10.0.0.7:80", "10.0.0.7"));
   EXPECT_FALSE(guard.allows_host("localhost", "10.0.0.7"));
-  EXPECT_TRUE((Guard{.token = "", .machine = "ada"}.allows_host("ada:80", "10.0.0.7")));
+  EXPECT_TRUE((Guard{.token = "", .machine = "Ada"}.allows_host("aDa:80", "10.0.0.7")));
+  EXPECT_TRUE(guard.allows_host("LocalHost:80", "127.0.0.1"));
 }
 
 TEST(GuardTest, LetsInPagesOfItsOwnOriginAndThoseThatAreNoPages) {

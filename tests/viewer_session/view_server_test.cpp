@@ -142,6 +142,18 @@ TEST_F(ViewServerTest, ClosesOnWhatIsNoMessageOrTooLong) {
   EXPECT_EQ(client.await("refused").at("do"), "play");
 }
 
+TEST_F(ViewServerTest, TellsWhoComesWhenThereIsNoPlaceLeft) {
+  {
+    std::vector<WebClient> clients;
+    for (int k = 0; k < 128; ++k) clients.emplace_back(port());
+    EXPECT_EQ(get(port(), "/").status, 503);
+    EXPECT_FALSE(clients.front().await("hello").is_null());
+  }
+  const Stopwatch watch;
+  while (get(port(), "/").status != 200 && watch.seconds() < 10) continue;
+  EXPECT_EQ(get(port(), "/").status, 200);
+}
+
 TEST_F(ViewServerTest, TwoClientsShareASession) {
   WebClient one(port()), other(port());
   const int first = one.await("hello").at("client"), second = other.await("hello").at("client");

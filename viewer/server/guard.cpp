@@ -12,6 +12,14 @@ std::string_view name_of_host(std::string_view host) {
   return host.substr(0, host.find(':'));
 }
 
+/// Names of hosts are the same in any case.
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return result;
+}
+
 /// Takes as long for any two texts of one length.
 bool same_secret(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
@@ -36,10 +44,10 @@ std::optional<std::string_view> value_of(std::string_view key, std::string_view 
 }  // namespace
 
 bool Guard::allows_host(std::string_view host, std::string_view address) const {
-  const std::string_view name = name_of_host(host);
+  const std::string name = lower_case(name_of_host(host));
   if (name.empty()) return false;
   const bool loops = address.starts_with("127.") || address == "::1";
-  return name == address || (!machine.empty() && name == machine) ||
+  return name == address || (!machine.empty() && name == lower_case(machine)) ||
          (loops && (name == "localhost" || name == "127.0.0.1" || name == "::1"));
 }
 

@@ -38,9 +38,14 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t most_connections = 128;
 constexpr std::uint32_t largest_header = 16 << 10;  // [bytes]
-constexpr auto request_time = 30s;                  // to send a request, or to take an answer
-constexpr int silence = 60;                         // of a client's machine, until it counts as gone [s]
-constexpr auto farewell = 300ms;                    // for clients to take leave
+constexpr auto request_time = 10s;   // to send a request: who has shown no token yet holds no place longer
+constexpr auto answer_time = 10min;  // to take an answer: megabytes, through whatever tunnel
+constexpr int silence = 60;          // of a client's machine, until it counts as gone [s]
+constexpr auto farewell = 300ms;     // for clients to take leave
+
+constexpr std::string_view busy =
+    "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain; charset=utf-8\r\nContent-Length: 35\r\n"
+    "Retry-After: 5\r\nConnection: close\r\n\r\nthere are too many connections now\n";
 
 constexpr std::string_view no_page =
     "The page of `supple view` was not built. Build the target viewer_page, which says what is missing (npm, or the\n"
@@ -112,9 +117,7 @@ class Session final : public Client, public std::enable_shared_from_this<Session
       : server_(server), counted_(std::move(counted)), socket_(std::move(stream)) {}
   void start(const http::request<http::empty_body>& request) {
     beast::get_lowest_layer(socket_).expires_never();
-    Tcp::socket& socket = beast::get_lowest_layer(socket_).socket();
-    socket.set_option(Tcp::no_delay(true));
-    watch(socket);
+    beast::get_lowest_layer(socket_).socket().set_option(Tcp::no_delay(true));
     socket_.set_option(websocket::stream_base::timeout{request_time, websocket::stream_base::none(), false});
     socket_.read_message_max(largest_message);
     socket_.async_accept(request, [self = shared_from_this()](Error error) {
@@ -131,7 +134,7 @@ class Session final : public Client, public std::enable_shared_from_this<Session
     if (!reading_ && server_.hub.wants_more(id_)) read();
   }
 
-  void leave() override { close(websocket::close_code::going_away); }
+  void leave() override { close({websocket::close_code::going_away, "the server ends"}); }
 
   /// Nothing more is read or written, and the last handler takes this away.
   void end() override {
@@ -155,7 +158,7 @@ class Session final : public Client, public std::enable_shared_from_this<Session
     } else {
       const auto bytes = buffer_.cdata();
       if (!server_.hub.receive(id_, {static_cast<const char*>(bytes.data()), bytes.size()}))
-        return close(websocket::close_code::bad_payload);
+        return close({websocket::close_code::bad_payload, "this is no JSON"});
     }
     buffer_.consume(buffer_.size());
     pump();
@@ -175,20 +178,20 @@ class Session final : public Client, public std::enable_shared_from_this<Session
     });
   }
 
-  void close(websocket::close_code code) {
+  void close(const websocket::close_reason& reason) {
     if (id_ == 0 || closed_) return;
     leaving_ = true;
-    close_with_ = code;
+    close_with_ = reason;
     if (writing_) return;  // one thing at a time
     closed_ = true;
-    socket_.async_close(code, [self = shared_from_this()](Error) { self->end(); });
+    socket_.async_close(reason, [self = shared_from_this()](Error) { self->end(); });
   }
   Server& server_;
   Counted counted_;
   websocket::stream<beast::tcp_stream, /*deflate=*/false> socket_;
   beast::flat_buffer buffer_;
   std::shared_ptr<const std::string> outgoing_;
-  std::optional<websocket::close_code> close_with_;
+  std::optional<websocket::close_reason> close_with_;
   int id_ = 0;
   bool reading_ = false, writing_ = false, leaving_ = false, closed_ = false;
 };
@@ -201,6 +204,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Connection(Server& server, Tcp::socket socket) : server_(server), counted_(server), stream_(std::move(socket)) {
     Error error;
     address_ = stream_.socket().local_endpoint(error).address();
+    watch(stream_.socket());
   }
 
   void read() {
@@ -286,7 +290,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     response_.content_length(resource.bytes.size());
     if (!known || request.method() != http::verb::head)
       response_.body() = {resource.bytes.data(), resource.bytes.size()};
-    stream_.expires_after(request_time);
+    stream_.expires_after(answer_time);
     http::async_write(stream_, response_, [self = shared_from_this()](Error error, std::size_t) {
       if (error) return;
       self->model_.reset();
@@ -396,8 +400,13 @@ class ViewServer::Network {
   void accept() {
     acceptor_.async_accept([this](Error error, Tcp::socket socket) {
       if (server_.closing) return;
-      if (!error && server_.connections < most_connections)
+      if (!error && server_.connections < most_connections) {
         std::make_shared<Connection>(server_, std::move(socket))->read();
+      } else if (!error) {
+        Error ignored;
+        socket.non_blocking(true, ignored);
+        socket.send(asio::buffer(busy), 0, ignored);
+      }
       if (!error) return accept();
       pause_.expires_after(100ms);  // such as too many open files
       pause_.async_wait([this](Error) { accept(); });
