@@ -2,6 +2,7 @@
 /// \file Choices by name: entries with a description and options, which commands, files and plug-ins choose from.
 
 #include <core/check.hpp>
+#include <core/text.hpp>
 
 #include <algorithm>
 #include <array>
@@ -178,8 +179,7 @@ class OptionsOf {
     } else if constexpr (std::is_enum_v<Member>) {
       return std::string(name_of(value));
     } else if constexpr (std::is_arithmetic_v<Member>) {
-      char text[32];
-      return {text, std::to_chars(text, text + sizeof text, value).ptr};
+      return exact(value);
     } else {
       return value;
     }

@@ -6,6 +6,9 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
+// What holds fixed-size matrices would be laid out by -march, one way in the library and another in a program.
+static_assert(EIGEN_MAX_STATIC_ALIGN_BYTES == 64, "compile with the definitions that supple::core brings");
+
 namespace supple {
 
 using Index = Eigen::Index;

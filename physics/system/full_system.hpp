@@ -4,6 +4,7 @@
 #include <core/check.hpp>
 #include <core/pack.hpp>
 #include <core/parallel.hpp>
+#include <core/text.hpp>
 #include <physics/model/explain_force_model.hpp>
 #include <physics/model/term_pack.hpp>
 #include <physics/system/dynamical_system.hpp>
@@ -15,7 +16,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace supple {
@@ -43,7 +46,10 @@ class FullSystem {
         numbering_(model_->num_nodes(), fixed_nodes),
         pattern_(numbering_, node_dim) {
     require_size("nodal_mass", nodal_mass_.size(), model_->num_nodes());
-    require((nodal_mass_.array() > 0).all(), "every node needs a mass > 0");
+    for (Index v = 0; v < nodal_mass_.size(); ++v)
+      require(nodal_mass_[v] > 0 && std::isfinite(nodal_mass_[v]), "mass of node " + std::to_string(v) + " is " +
+                                                                       shown(nodal_mass_[v]) +
+                                                                       ", expected > 0: is it in no component?");
     mass_.resize(dim());
     for (Index f = 0; f < numbering_.num_free(); ++f)
       mass_.segment<node_dim>(f * node_dim).setConstant(nodal_mass_[numbering_.free_nodes()[f]]);

@@ -1,5 +1,6 @@
 #include <core/check.hpp>
 #include <numerics/eigen/eigensolver.hpp>
+#include <reduction/basis/kept_modes.hpp>
 #include <reduction/basis/skinning_modes.hpp>
 #include <reduction/subspace/rigid_modes.hpp>
 
@@ -49,12 +50,18 @@ SkinningWeights SkinningModes::weights(const RestState& object) const {
   SkinningWeights result{{}, Vector::Zero(num_weights), Vector::Zero(num_weights)};
   W.leftCols(num_constant) = constants(components, numbering, mass);
   if (const Index more = num_weights - num_constant; more > 0) {
-    const EigenPairs pairs =
-        smallest_eigenpairs(traces_of_blocks(object.K), mass, W.leftCols(num_constant),
-                            {.num_modes = more, .tolerance = tolerance, .seed = seed, .progress = progress});
-    if (pairs.report.status != Status::Converged)
-      throw SolverError("skinning modes: only " + std::to_string(pairs.omega_squared.size()) + " of " +
-                        std::to_string(more) + " weights found");
+    const auto inputs = [&](Digest& digest) {
+      digest.add(object.K).add(mass).add(Matrix(W.leftCols(num_constant))).add(more).add(tolerance).add(seed);
+    };
+    const EigenPairs pairs = checkpoint.keep("skinning-weights", inputs, [&] {
+      EigenPairs found =
+          smallest_eigenpairs(traces_of_blocks(object.K), mass, W.leftCols(num_constant),
+                              {.num_modes = more, .tolerance = tolerance, .seed = seed, .progress = progress});
+      if (found.report.status != Status::Converged)
+        throw SolverError("skinning modes: only " + std::to_string(found.omega_squared.size()) + " of " +
+                          std::to_string(more) + " weights found");
+      return found;
+    });
     W.rightCols(more) = pairs.vectors;
     result.lambda.tail(more) = pairs.omega_squared.cwiseMax(0);
     result.residuals.tail(more) = pairs.residuals;

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Subspaces from affine motions blended by smooth weights.
 
+#include <core/checkpoint.hpp>
 #include <core/progress.hpp>
 #include <physics/system/rest_state.hpp>
 #include <reduction/subspace/subspace_builder.hpp>
@@ -26,6 +27,7 @@ struct SkinningModes {
   double tolerance = 1e-8;  ///< of the weights, relative residual
   std::uint64_t seed = 1;
   Progress progress = {};
+  Checkpoint checkpoint = {};  ///< keeps the weights
 
   /// \throws std::invalid_argument for fewer weights than free parts or more than free nodes; SolverError
   /// when the eigensolver does not converge.

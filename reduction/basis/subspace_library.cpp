@@ -87,7 +87,8 @@ NamedSubspace skinning() {
                    basis = share(SkinningModes{.num_weights = skinning_weights(choice),
                                                .tolerance = choice.tolerance,
                                                .seed = choice.seed,
-                                               .progress = run.progress}(object));
+                                               .progress = run.progress,
+                                               .checkpoint = run.checkpoint}(object));
                  });
                  return basis;
                });

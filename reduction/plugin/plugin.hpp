@@ -53,7 +53,7 @@ void load_plugin(const std::filesystem::path& path);
   "Supple " SUPPLE_VERSION ", compiler " SUPPLE_ABI_TEXT(__GNUC__) ", ABI " SUPPLE_ABI_TEXT(__GXX_ABI_VERSION)      \
       SUPPLE_ABI_STRINGS                                                                                            \
       ", Eigen " SUPPLE_ABI_TEXT(EIGEN_WORLD_VERSION) "." SUPPLE_ABI_TEXT(EIGEN_MAJOR_VERSION) "." SUPPLE_ABI_TEXT( \
-          EIGEN_MINOR_VERSION) " aligned to " SUPPLE_ABI_TEXT(EIGEN_MAX_ALIGN_BYTES)
+          EIGEN_MINOR_VERSION) " aligned to " SUPPLE_ABI_TEXT(EIGEN_MAX_STATIC_ALIGN_BYTES)
 
 /// Defines what the program looks for; followed by a body that adds to `registry`.
 #define SUPPLE_PLUGIN(registry)                                                               \

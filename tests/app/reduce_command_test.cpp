@@ -571,7 +571,8 @@ TEST_F(ReduceCommandTest, RefusesModelsWhoseArraysContradict) {
 
 TEST_F(ReduceCommandTest, GoesOnFromACheckpointWithTheSameBits) {
   for (const Arguments& job : {Arguments{"reduce", "bar:10x3x3", "--fix", "x<=0", "--modes", "6"},
-                               Arguments{"reduce", "bar:10x3x3", "--recipe", "subspace", "--modes", "9"}}) {
+                               Arguments{"reduce", "bar:10x3x3", "--recipe", "subspace", "--modes", "9"},
+                               Arguments{"reduce", "bar:10x3x3", "--recipe", "subspace", "--subspace", "skinning"}}) {
     const auto bytes_of = [&](const Arguments& more) {
       Arguments arguments = job;
       arguments.insert(arguments.end(), more.begin(), more.end());

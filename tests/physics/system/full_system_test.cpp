@@ -231,7 +231,9 @@ TEST(FullSystem, RefusesWhatCannotBeASystem) {
   Vector bad = mass;
   for (const double value : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     bad[2] = value;
-    EXPECT_THROW(make(bad, {}), std::invalid_argument) << value;
+    EXPECT_THAT([&] { make(bad, {}); },
+                testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("mass of node ")))
+        << value;
   }
   EXPECT_THROW(make(mass, {model.num_nodes()}), std::invalid_argument);
   EXPECT_THROW(make(mass, {-1}), std::invalid_argument);
