@@ -115,7 +115,9 @@ void EditCommand::run() const {
   require_writable(json);
   StageTimes times;
   const ReducedModel reduced = load_model(model);
-  const EditScene edits = read_edit_scene(scene, reduced.body);
+  std::vector<std::string> warnings;
+  const EditScene edits = read_edit_scene(scene, reduced.body, &warnings);
+  for (const std::string& warning : warnings) warn(warning);
   const StaticOptions options = decide(*this, edits);
   const Points& rest = node_positions(reduced.body);
   const ReducedModes modes = reduced_modes(reduced);

@@ -5,6 +5,7 @@
 #include <app/report/terminal.hpp>
 #include <core/check.hpp>
 #include <core/version.hpp>
+#include <io/mesh/node_sets.hpp>
 #include <physics/mesh/tet_mesh.hpp>
 #include <reduction/model/reduced_model.hpp>
 
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -80,8 +82,10 @@ Json mesh_json(const Mesh& mesh, Rows& rows) {
             {"components", components},
             {"hinges", {{"edges", hinges.edges}, {"nodes", hinges.nodes}}},
             {"regions", Json::array()}};
-  for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end())) {
-    const auto count = std::count(mesh.region.begin(), mesh.region.end(), tag);
+  std::map<int, Index> cells_of_region;
+  for (const int tag : mesh.region)
+    for (const int region : regions_of_tag(mesh, tag)) ++cells_of_region[region];
+  for (const auto& [tag, count] : cells_of_region) {
     const auto name = mesh.region_names.find(tag);
     const std::string text = name == mesh.region_names.end() ? "" : name->second;
     json["regions"].push_back({{"tag", tag}, {"name", text}, {json_key(kind), count}});

@@ -17,6 +17,9 @@ struct NamedMesh {
   const Points& nodes() const {
     return std::visit([](const auto& m) -> const Points& { return m.nodes; }, mesh);
   }
+  const NodePlaces& places() const {
+    return std::visit([](const auto& m) -> const NodePlaces& { return m.places; }, mesh);
+  }
 };
 
 /// A built-in such as "bar:80x20x10" or "sphere:16", or else a file: a surface by its extension (.obj, .off, .ply,

@@ -36,7 +36,7 @@ std::vector<Index> held_nodes(const ProblemOptions& problem, const NamedMesh& na
         },
         named.mesh);
   }
-  for (const std::filesystem::path& file : problem.fix_file) fix(read_node_set(nodes, file));
+  for (const std::filesystem::path& file : problem.fix_file) fix(read_node_set(nodes, file, named.places()));
   return {held.begin(), held.end()};
 }
 
@@ -51,6 +51,11 @@ struct Material {
   IsotropicModuli moduli;
   double density = 0;
   MaterialLaw::Named parameters = {};  // instead of what the moduli give
+
+  bool operator==(const Material& other) const {
+    return moduli.young == other.moduli.young && moduli.poisson == other.moduli.poisson && density == other.density &&
+           parameters == other.parameters;
+  }
 };
 
 /// "mu=2e4"
@@ -106,18 +111,32 @@ void set_materials(const ProblemOptions& problem, SolidOf<Mesh>& solid) {
     if (const auto regions = file->object_if("regions")) {
       if (mesh.region.empty())
         throw InputError(problem.materials->string() + ": the mesh has no regions, so there is nothing to tell apart");
-      std::map<int, std::int32_t> material_of_region;
-      for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end())) {
-        material_of_region[tag] = 0;
+      std::map<int, std::pair<std::string, std::int32_t>>
+          material_of_region;  // those that the file names, by which key
+      for (const int tag : all_regions(mesh)) {
         const auto name = mesh.region_names.find(tag);
         for (const std::string& key : {name == mesh.region_names.end() ? "" : name->second, std::to_string(tag)})
           if (!key.empty() && regions->contains(key)) {
-            material_of_region[tag] = static_cast<std::int32_t>(materials.size());
+            material_of_region[tag] = {key, static_cast<std::int32_t>(materials.size())};
             materials.push_back(read_material(regions->object(key), law, base));
             break;
           }
       }
-      for (const int tag : mesh.region) solid.material_of_cell.push_back(material_of_region[tag]);
+      std::map<int, std::int32_t> material_of_tag;
+      for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end())) {
+        std::string named;
+        for (const int region : regions_of_tag(mesh, tag)) {
+          const auto found = material_of_region.find(region);
+          if (found == material_of_region.end()) continue;
+          const auto& [key, material] = found->second;
+          if (!named.empty() && !(materials[material] == materials[material_of_tag[tag]]))
+            throw InputError(problem.materials->string() + ": some cells are in both '" + named + "' and '" + key +
+                             "', whose materials differ");
+          named = key;
+          material_of_tag[tag] = material;
+        }
+      }
+      for (const int tag : mesh.region) solid.material_of_cell.push_back(material_of_tag[tag]);
     }
     file->finish();
   }
@@ -238,7 +257,7 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
                                               : ReduceOptions{};
   if (problem.subspace) options.subspace = *problem.subspace;
   if (problem.dimension) options.dimension = *problem.dimension;
-  if (problem.snapshots) options.snapshots = read_poses(*problem.snapshots, named.nodes());
+  if (problem.snapshots) options.snapshots = read_snapshots(*problem.snapshots, named.nodes(), named.places());
   const std::vector<std::string> parts = parts_of_subspace(options.subspace);
   const bool pca = std::ranges::find(parts, "pca") != parts.end();
   if (pca && !problem.snapshots) throw InputError("--subspace pca needs --snapshots");
@@ -256,7 +275,7 @@ ReduceOptions reduce_options(const ProblemOptions& problem, const NamedMesh& nam
   options.poses.inverted = inverted_rule(
       law(body),
       problem.inverted ? std::optional(value_named<InvertedPoses>(*problem.inverted, "inverted")) : std::nullopt);
-  if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, named.nodes());
+  if (problem.poses_file) options.given_poses = read_poses(*problem.poses_file, named.nodes(), named.places());
   return options;
 }
 

@@ -394,7 +394,10 @@ void ReduceCommand::run() const {
   for (const std::string& note : report.notes) warn(note);
   if (options.target_error > 0 && report.training_error > options.target_error)
     warn("the training error is " + shown_percent(report.training_error) + ", not " +
-         shown_percent(options.target_error) + ": allow more --points than " + std::to_string(options.points));
+         shown_percent(options.target_error) + ": " +
+         (!options.candidates.empty() && static_cast<Index>(options.candidates.size()) <= options.points
+              ? "the " + shown_count(static_cast<long long>(options.candidates.size())) + " candidates cannot do better"
+              : "allow more --points than " + std::to_string(options.points)));
   if (found && !found->met) warn("the goal is missed: the model is " + reason(*found, *goal));
 
   watch.restart();

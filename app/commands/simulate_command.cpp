@@ -30,6 +30,20 @@ namespace supple {
 
 namespace {
 
+std::vector<Index> tracked_nodes(const std::vector<Index>& places_to_track, const Body& body) {
+  const NodePlaces& places = node_places(body);
+  const Index count = places.num_places(num_nodes(body));
+  std::vector<Index> nodes;
+  for (const Index place : places_to_track) {
+    if (place < 0 || place >= count)
+      throw InputError("--track: there is no node " + std::to_string(place) + ", expected 0 to " +
+                       std::to_string(count - 1));
+    nodes.push_back(places.node(place));
+    if (nodes.back() < 0) throw InputError("--track: no cell has node " + std::to_string(place));
+  }
+  return nodes;
+}
+
 /// The scene with the command line's word on top, and all that was left open decided.
 SimulationOptions decide(const SimulateCommand& command, const ReducedModel& model, Scene& scene) {
   if (command.time) scene.duration = option_quantity("--time", *command.time, "s");
@@ -38,11 +52,7 @@ SimulationOptions decide(const SimulateCommand& command, const ReducedModel& mod
   if (command.tolerance) scene.tolerance = *command.tolerance;
   if (command.halvings) scene.max_halvings = *command.halvings;
   if (command.every) scene.every = *command.every;
-  if (!command.track.empty()) scene.track = command.track;
-  for (const Index node : scene.track)
-    if (node < 0 || node >= num_nodes(model.body))
-      throw InputError("--track: there is no node " + std::to_string(node) + ", expected 0 to " +
-                       std::to_string(num_nodes(model.body) - 1));
+  if (!command.track.empty()) scene.track = tracked_nodes(command.track, model.body);
   if (command.every && *command.every < 1)
     throw InputError("--every is " + std::to_string(*command.every) + ", expected at least 1");
   if (command.integrator) scene.integrator = Choice::parse(*command.integrator);
@@ -81,10 +91,12 @@ void write_errors(const std::filesystem::path& path, const std::vector<ErrorReco
   write_csv(path, table);
 }
 
-void write_tracked(const std::filesystem::path& path, const Scene& scene, const Simulation& run) {
+void write_tracked(const std::filesystem::path& path, const Scene& scene, const NodePlaces& places,
+                   const Simulation& run) {
   std::vector<CsvTable::Column> columns{{"time", "s"}};
   for (const Index node : scene.track)
-    for (const char* axis : {"x", "y", "z"}) columns.push_back({"u" + std::string(axis) + std::to_string(node), "m"});
+    for (const char* axis : {"x", "y", "z"})
+      columns.push_back({"u" + std::string(axis) + std::to_string(places.place(node)), "m"});
   CsvTable table(columns);
   for (std::size_t k = 0; k < run.steps.size(); ++k) {
     std::vector<std::string> row{exact(run.steps[k].time)};
@@ -117,8 +129,8 @@ void draw_energies(const std::filesystem::path& path, const Simulation& run) {
                               {"work less what damping took", time, accounted, PlotStyle::DashedLine}}});
 }
 
-Json report_json(const SimulateCommand& command, const Scene& scene, const SimulationOptions& options,
-                 const Simulation& run) {
+Json report_json(const SimulateCommand& command, const Scene& scene, const NodePlaces& places,
+                 const SimulationOptions& options, const Simulation& run) {
   const Effort& effort = run.effort;
   Json json;
   json["command"] = "simulate";
@@ -165,13 +177,14 @@ Json report_json(const SimulateCommand& command, const Scene& scene, const Simul
   json["every"] = options.every;
   json["tracked"] = Json::array();
   for (std::size_t j = 0; j < scene.track.size(); ++j)
-    json["tracked"].push_back({{"node", scene.track[j]}, {"largest_displacement", run.reach[static_cast<Index>(j)]}});
+    json["tracked"].push_back(
+        {{"node", places.place(scene.track[j])}, {"largest_displacement", run.reach[static_cast<Index>(j)]}});
   json["threads"] = num_threads();
   return json;
 }
 
-void print_summary(const SimulateCommand& command, const Scene& scene, const SimulationOptions& options,
-                   const Simulation& run, double reconstruction) {
+void print_summary(const SimulateCommand& command, const Scene& scene, const NodePlaces& places,
+                   const SimulationOptions& options, const Simulation& run, double reconstruction) {
   const Effort& effort = run.effort;
   Rows rows{
       {"scene", scene.description},
@@ -198,7 +211,7 @@ void print_summary(const SimulateCommand& command, const Scene& scene, const Sim
     rows.emplace_back("reconstruction", shown(1e3 * reconstruction / static_cast<double>(run.times.size()), 3) +
                                             " ms a frame of all nodes");
   for (std::size_t j = 0; j < scene.track.size(); ++j)
-    rows.emplace_back("node " + std::to_string(scene.track[j]),
+    rows.emplace_back("node " + std::to_string(places.place(scene.track[j])),
                       "displaced by at most " + shown(run.reach[static_cast<Index>(j)], 3) + " m");
   if (!command.output.empty()) rows.emplace_back("results", command.output.string());
   print_rows(stdout, "simulation of " + command.model.string(), rows);
@@ -211,6 +224,7 @@ void SimulateCommand::run() const {
   require_writable(json);
   StageTimes times;
   const ReducedModel reduced = load_model(model);
+  const NodePlaces& places = node_places(reduced.body);
   Scene what = scene ? read_scene(*scene, reduced.body) : pluck_scene(reduced);
   const SimulationOptions options = decide(*this, reduced, what);
   const OutputFolder folder(output);
@@ -232,7 +246,7 @@ void SimulateCommand::run() const {
     trajectory.model_checksum = header_checksum(model);
     save_trajectory(output / trajectory_file, trajectory);
     write_energies(output / "energies.csv", result);
-    write_tracked(output / "tracked.csv", what, result);
+    write_tracked(output / "tracked.csv", what, places, result);
     if (!result.errors.empty()) write_errors(output / "errors.csv", result.errors);
     if (result.steps.back().time == 0)
       warn("there is no step to draw: there will be no energy.png");
@@ -245,13 +259,13 @@ void SimulateCommand::run() const {
     times.finish("results");
   }
   clear_progress();
-  Json report = report_json(*this, what, options, result);
+  Json report = report_json(*this, what, places, options, result);
   report["reconstruction_seconds"] = reconstruction;
   report["seconds"] = json_seconds(times.seconds(), times.total());
   report["peak_memory"] = peak_resident_memory();
   if (!output.empty()) write_json(output / "report.json", report);
   if (!is_stdout(json)) {
-    print_summary(*this, what, options, result, reconstruction);
+    print_summary(*this, what, places, options, result, reconstruction);
     print_stages(stdout, times.seconds(), times.total());
   }
   write_json(json, report);

@@ -4,6 +4,7 @@
 #include <core/stopwatch.hpp>
 #include <io/frames/vtu_writer.hpp>
 
+#include <numeric>
 #include <optional>
 
 namespace supple {
@@ -44,19 +45,33 @@ void draw_frames(const std::filesystem::path& path, const Points& rest, const st
   write_coloured_picture(path, objects, "displacement [m]", 1600, 800);
 }
 
+/// Where nodes stand in the user's file, if it is not where they stand here.
+void add_places(VtuFields& fields, const NodePlaces& places, const std::vector<Index>& nodes) {
+  if (places.of_node.empty()) return;
+  RowMatrix place(static_cast<Index>(nodes.size()), 1);
+  for (Index k = 0; k < place.rows(); ++k) place(k, 0) = static_cast<double>(places.place(nodes[k]));
+  fields.point_data.push_back({"node", std::move(place)});
+}
+
 void write_surface(const FrameToWrite& frame, VtuSeries& series) {
   const Points displacement = frame.surface.rows(as_points(frame.u));
-  series.add(
-      frame.time, frame.surface.rows(node_positions(frame.body)) + displacement, frame.surface.triangles,
-      {.point_data = {{"displacement [m]", displacement}, {"velocity [m/s]", frame.surface.rows(as_points(frame.v))}}});
+  VtuFields fields{
+      .point_data = {{"displacement [m]", displacement}, {"velocity [m/s]", frame.surface.rows(as_points(frame.v))}}};
+  add_places(fields, node_places(frame.body), frame.surface.nodes);
+  series.add(frame.time, frame.surface.rows(node_positions(frame.body)) + displacement, frame.surface.triangles,
+             fields);
 }
 
 /// Of a shell, whose cells are its surface, the surface.
 void write_cells(const FrameToWrite& frame, VtuSeries& series) {
   if (std::holds_alternative<Shell>(frame.body)) return write_surface(frame, series);
   visit_solid(frame.body, [&](const auto& solid) {
-    series.add(frame.time, solid.mesh.nodes + as_points(frame.u), solid.mesh.cells,
-               {.point_data = {vector_field("displacement [m]", frame.u), vector_field("velocity [m/s]", frame.v)}});
+    VtuFields fields{
+        .point_data = {vector_field("displacement [m]", frame.u), vector_field("velocity [m/s]", frame.v)}};
+    std::vector<Index> nodes(static_cast<std::size_t>(solid.mesh.num_nodes()));
+    std::iota(nodes.begin(), nodes.end(), Index{0});
+    add_places(fields, solid.mesh.places, nodes);
+    series.add(frame.time, solid.mesh.nodes + as_points(frame.u), solid.mesh.cells, fields);
   });
 }
 

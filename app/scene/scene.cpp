@@ -47,29 +47,59 @@ TimeSpan read_span(const JsonFields& fields) {
   return span;
 }
 
+/// Where a user's index of a node may lie.
+Interval node_range(const Body& body) {
+  return between(0, static_cast<double>(node_places(body).num_places(num_nodes(body)) - 1));
+}
+
 Index read_node(const JsonFields& fields, const Body& body) {
-  return fields.integer("node", between(0, static_cast<double>(num_nodes(body) - 1)));
+  const Index place = fields.integer("node", node_range(body)), node = node_places(body).node(place);
+  if (node < 0) fields.fail("node", "is " + std::to_string(place) + ", a node that no cell has");
+  return node;
+}
+
+/// The node nearest to the point "at". \throws InputError for a point farther off than half the object's diagonal.
+Index node_at(const JsonFields& fields, const Points& nodes) {
+  const Point at = fields.point("at");
+  const Index node = nearest_node(nodes, at);
+  const double distance = (nodes.row(node).transpose() - at).norm(), diagonal = bounding_box(nodes).diagonal();
+  if (distance > 0.5 * diagonal)
+    fields.fail("at", "is " + shown(distance, 3) + " m from the nearest node of an object of " + shown(diagonal, 3) +
+                          " m; lengths are in metres");
+  return node;
 }
 
 /// The nodes that "node", "at" or "nodes" names, exactly one of them, with their shares of the whole: by
 /// mass, so that a finer mesh is not pulled harder.
-std::vector<std::pair<Index, double>> read_nodes(const JsonFields& fields, const Body& body) {
+using NodeShares = std::vector<std::pair<Index, double>>;
+NodeShares read_nodes(const JsonFields& fields, const Body& body) {
   if (fields.contains("node") + fields.contains("at") + fields.contains("nodes") != 1)
     throw InputError(fields.source() + ": " + fields.place() + " needs one of 'node', 'at' and 'nodes'");
   if (fields.contains("node")) return {{read_node(fields, body), 1.0}};
-  if (fields.contains("at")) return {{nearest_node(node_positions(body), fields.point("at")), 1.0}};
+  if (fields.contains("at")) return {{node_at(fields, node_positions(body)), 1.0}};
+  const std::string rule = fields.text("nodes");
   std::vector<Index> nodes;
   try {
-    nodes = select_nodes(node_positions(body), fields.text("nodes"));
+    nodes = select_nodes(node_positions(body), rule);
   } catch (const InputError& error) {
     fields.fail("nodes", std::string("selects nothing: ") + error.what());
   }
   const Vector mass = nodal_mass(body);
-  std::vector<std::pair<Index, double>> shares;
+  NodeShares shares;
   double sum = 0;
   for (const Index v : nodes) sum += mass[v];
   for (const Index v : nodes) shares.emplace_back(v, mass[v] / sum);
   return shares;
+}
+
+/// What acts on nodes that the model holds moves nothing, which is easily overlooked.
+void warn_of_held_nodes(const JsonFields& fields, const NodeShares& nodes, const Body& body, const char* what) {
+  double held = 0;
+  for (const auto& [node, share] : nodes)
+    if (std::ranges::binary_search(fixed_nodes(body), node)) held += share;
+  if (held > 0.01)
+    warn(fields.source() + ": " + fields.place() + ": " + shown_percent(held) + " of this " + what +
+         " acts on nodes that the model holds, and moves nothing");
 }
 
 /// An option of a registry's entry, as text.
@@ -96,7 +126,9 @@ std::vector<Index> all_nodes(Index n) {
 TimedSprings read_springs(const JsonFields& fields, const Body& body) {
   TimedSprings result;
   const double stiffness = fields.number("stiffness", positive, "N/m");
-  for (const auto& [node, share] : read_nodes(fields, body)) result.springs.emplace_back(node, share * stiffness);
+  const NodeShares nodes = read_nodes(fields, body);
+  warn_of_held_nodes(fields, nodes, body, "spring");
+  for (const auto& [node, share] : nodes) result.springs.emplace_back(node, share * stiffness);
   result.when = read_span(fields);
   const bool target = fields.contains("target"), displacement = fields.contains("displacement"),
              path = fields.contains("path");
@@ -182,7 +214,9 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
   for (const JsonFields& fields : file.objects_if("forces")) {
     TimedLoads timed{{}, read_span(fields)};
     const Point force = fields.point("force", "N");
-    for (const auto& [node, share] : read_nodes(fields, body)) timed.loads.forces.push_back({node, share * force});
+    const NodeShares nodes = read_nodes(fields, body);
+    warn_of_held_nodes(fields, nodes, body, "force");
+    for (const auto& [node, share] : nodes) timed.loads.forces.push_back({node, share * force});
     scene.loads.push_back(std::move(timed));
   }
   for (const JsonFields& fields : file.objects_if("springs")) scene.springs.push_back(read_springs(fields, body));
@@ -220,7 +254,11 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
   if (const auto output = file.object_if("output")) {
     if (output->contains("every")) scene.every = output->integer("every", at_least(1));
     if (output->contains("track"))
-      scene.track = output->integers("track", between(0, static_cast<double>(num_nodes(body) - 1)));
+      for (const Index place : output->integers("track", node_range(body))) {
+        scene.track.push_back(node_places(body).node(place));
+        if (scene.track.back() < 0)
+          output->fail("track", "names node " + std::to_string(place) + ", which no cell has");
+      }
   }
   file.finish();
   return scene;

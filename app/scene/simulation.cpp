@@ -204,11 +204,14 @@ SimulationOptions complete(Scene& scene, const ReducedModel& model) {
   if (!scene.duration || !scene.step || scene.track.empty()) {
     const Scene pluck = pluck_scene(model);
     if (!scene.duration) scene.duration = pluck.duration;
-    if (!scene.step) scene.step = std::min(*pluck.step, time_across(scene, model.body) / 60);
+    if (!scene.step) scene.step = std::min({*pluck.step, time_across(scene, model.body) / 60, *scene.duration});
     if (scene.track.empty()) scene.track = pluck.track;
   }
   if (!(*scene.duration > 0)) throw InputError("the duration is " + shown(*scene.duration) + " s, expected > 0");
   if (!(*scene.step > 0)) throw InputError("the step is " + shown(*scene.step) + " s, expected > 0");
+  if (*scene.step > *scene.duration * (1 + 1e-6))
+    throw InputError("the step is " + shown(*scene.step) + " s, longer than the duration of " + shown(*scene.duration) +
+                     " s");
   const double steps = std::max(1.0, std::ceil(*scene.duration / *scene.step - 1e-6));
   if (steps > 1e8) throw InputError(shown(steps) + " steps are more than the 1e8 that a run may have");
 

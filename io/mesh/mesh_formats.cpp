@@ -1,6 +1,8 @@
+#include <core/text.hpp>
 #include <io/mesh/mesh_formats.hpp>
 #include <physics/mesh/elements.hpp>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <initializer_list>
@@ -122,12 +124,39 @@ void add_vtk_cells(const VtkCells& cells, Index first_node, const Cursor& in, Fi
       mesh.add_hexahedron(std::span(nodes).first(8));
     }
     mesh.numbers.cell.push_back(first_cell + c);
-    if (has_region) mesh.region.push_back(to_region(cells.region[c]));
+    if (has_region) mesh.attribute.push_back(cells.region[c]);
   }
 }
 
-int to_region(double value) {
-  return std::abs(value) < 1e9 ? static_cast<int>(value) : 0;
+int tag_of_groups(FileMesh& mesh, const std::vector<int>& groups) {
+  if (groups.size() == 1) return groups.front();
+  for (const auto& [tag, others] : mesh.region_groups)
+    if (others == groups) return tag;
+  constexpr int first = 1'000'000'000;  // beyond what people number
+  const int tag = first + static_cast<int>(mesh.region_groups.size());
+  mesh.region_groups[tag] = groups;
+  return tag;
+}
+
+void make_regions_of_attributes(FileMesh& mesh) {
+  constexpr std::size_t most_regions = 1000;
+  std::vector<double>& attribute = mesh.attribute;
+  if (attribute.empty()) return;
+  const auto is_tag = [](double value) { return !(std::abs(value) < 1e9) || value == std::trunc(value); };
+  if (std::ranges::all_of(attribute, is_tag)) {
+    for (const double value : attribute) mesh.region.push_back(std::abs(value) < 1e9 ? static_cast<int>(value) : 0);
+    return;
+  }
+  std::map<double, int> tag_of;
+  for (const double value : attribute)
+    if (std::isfinite(value)) tag_of[value] = 0;
+  if (tag_of.size() > most_regions) {
+    mesh.warnings.push_back("attributes of cells have " + std::to_string(tag_of.size()) +
+                            " different values, too many for regions: not read");
+    return;
+  }
+  for (int tag = 0; auto& [value, number] : tag_of) mesh.region_names[number = ++tag] = exact(value);
+  for (const double value : attribute) mesh.region.push_back(std::isfinite(value) ? tag_of[value] : 0);
 }
 
 bool is_region_array(std::string_view name) {

@@ -18,6 +18,9 @@ struct FileMesh {
   std::vector<std::array<Index, 8>> hexahedra;  ///< as TrilinearHex has them
   std::vector<int> region;                      ///< one a tet or hexahedron, in order of the file, or empty
   std::map<int, std::string> region_names;
+  std::map<int, std::vector<int>> region_groups;  ///< see CellMesh
+  std::vector<double>
+      attribute;  ///< one a cell, or empty: what tells the regions where a format has real numbers for it
   MeshNumbers numbers;
   std::vector<std::string> warnings;
 
@@ -54,8 +57,12 @@ struct VtkCells {
 };
 void add_vtk_cells(const VtkCells& cells, Index first_node, const Cursor& in, FileMesh& mesh);
 
-/// The region that an array of floating-point numbers tells; 0 (none) for what is no tag.
-int to_region(double value);
+/// The tag of cells that are in all of these groups: that of the group, or one of their own.
+/// \param groups  ascending, each once, at least one.
+int tag_of_groups(FileMesh& mesh, const std::vector<int>& groups);
+
+/// Makes regions of attributes: whole numbers are tags; others get tags from 1, ascending, and their value as name.
+void make_regions_of_attributes(FileMesh& mesh);
 
 /// Whether a cell array of that name tells regions.
 bool is_region_array(std::string_view name);

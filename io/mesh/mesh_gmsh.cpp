@@ -1,6 +1,10 @@
 #include <io/mesh/mesh_formats.hpp>
 
+#include <algorithm>
+#include <cstdlib>
+#include <numeric>
 #include <optional>
+#include <set>
 
 namespace supple {
 namespace {
@@ -67,6 +71,8 @@ class GmshReader {
         read_physical_names();
       else if (section == "$Entities" && is_4())
         binary_part([&] { read_entities(); });
+      else if (section == "$PartitionedEntities" && is_4())
+        binary_part([&] { read_partitioned_entities(); });
       else if (section == "$Nodes")
         read_nodes();
       else if (section == "$Elements")
@@ -144,16 +150,38 @@ class GmshReader {
   }
 
   void read_entities() {
+    for_each_entity([](int, std::int64_t) {});
+  }
+
+  /// Parts of entities, each with a tag of its own, the entity that it is of, and the same physical groups.
+  void read_partitioned_entities() {
+    size("the number of partitions");
+    const Index num_ghosts = count("ghost entities", 4, 8);
+    for (Index k = 0; k < num_ghosts; ++k) integer("a ghost entity"), integer("its partition");
+    for_each_entity([&](int dim, std::int64_t tag) {
+      const std::int64_t parent_dim = integer("the dimension of the parent"), parent = integer("the parent's tag");
+      const Index num_partitions = count("partitions", 2, 4);
+      for (Index j = 0; j < num_partitions; ++j) integer("a partition");
+      const auto of_parent = physical_of_entity_.find(parent);
+      if (dim == 3 && parent_dim == 3 && of_parent != physical_of_entity_.end())
+        physical_of_entity_[tag].insert(of_parent->second.begin(), of_parent->second.end());
+    });
+  }
+
+  /// \param read_more  reads what stands behind the tag of an entity: called with its dimension and tag.
+  template <typename ReadMore>
+  void for_each_entity(const ReadMore& read_more) {
     std::array<Index, 4> counts{};
     for (Index& n : counts) n = count("entities", 2, 16);
     for (int dim = 0; dim < 4; ++dim)
       for (Index k = 0; k < counts[dim]; ++k) {
         const std::int64_t tag = integer("an entity tag");
+        read_more(dim, tag);
         for (int c = 0; c < (dim == 0 ? 3 : 6); ++c) real("a bounding box");
         const Index num_physical = count("physical tags", 2, 4);
         for (Index j = 0; j < num_physical; ++j) {
           const std::int64_t physical = integer("a physical tag");
-          if (dim == 3) physical_of_entity_.try_emplace(tag, static_cast<int>(physical));
+          if (dim == 3) physical_of_entity_[tag].insert(static_cast<int>(std::abs(physical)));
         }
         const Index num_bounding = dim == 0 ? 0 : count("bounding entities", 2, 4);
         for (Index j = 0; j < num_bounding; ++j) integer("a bounding entity");
@@ -221,12 +249,14 @@ class GmshReader {
           const std::int64_t entity = integer("an entity tag");
           const ElementType type = read_type();
           const Index n = count("elements", 2 * type.num_nodes, size_of_size_ * (type.num_nodes + 1));
-          const auto physical = physical_of_entity_.find(entity);
+          const auto groups = physical_of_entity_.find(entity);
+          const int physical = groups == physical_of_entity_.end() || type.dim != 3
+                                   ? 0
+                                   : tag_of_groups(mesh_, {groups->second.begin(), groups->second.end()});
           total += n;
           for (Index k = 0; k < n; ++k) {
             const std::int64_t number = size("an element tag");
-            read_element(type, number, physical == physical_of_entity_.end() ? 0 : physical->second, entity,
-                         [&] { return size("a node tag"); });
+            read_element(type, number, physical, entity, [&] { return size("a node tag"); });
           }
         }
         if (total != num_elements)
@@ -287,7 +317,7 @@ class GmshReader {
         mesh_.num_higher += type.num_nodes > 4;
       }
       mesh_.numbers.cell.push_back(number);
-      physical_.push_back(static_cast<int>(physical));
+      physical_.push_back(static_cast<int>(std::abs(physical)));
       entity_.push_back(static_cast<int>(entity));
     } else if (type.dim == 3) {
       ++mesh_.other_solid[type.plural];
@@ -296,7 +326,50 @@ class GmshReader {
     }
   }
 
+  /// A tet or hexahedron in several physical groups stands several times in files of version 2, once for each.
+  void merge_repeated_cells() {
+    const bool is_tets = mesh_.hexahedra.empty();
+    if (is_4() || (!is_tets && !mesh_.tets.empty()) ||
+        (!mesh_.mid_edges.empty() && mesh_.mid_edges.size() != mesh_.tets.size()))
+      return;
+    if (is_tets)
+      merge_repeated(mesh_.tets);
+    else
+      merge_repeated(mesh_.hexahedra);
+  }
+
+  template <std::size_t size>
+  void merge_repeated(std::vector<std::array<Index, size>>& cells) {
+    if (std::set<int>(physical_.begin(), physical_.end()).size() < 2) return;
+    std::vector<std::size_t> order(cells.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t e) { return cells[e]; });
+    std::vector<std::set<int>> groups(cells.size());
+    std::vector<char> goes(cells.size(), false);
+    bool any = false;
+    for (std::size_t k = 0, first = 0; k < order.size(); ++k) {
+      if (cells[order[k]] != cells[order[first]]) first = k;
+      goes[order[k]] = k > first && !groups[order[first]].contains(physical_[order[k]]);
+      any |= goes[order[k]] != 0;
+      groups[order[first]].insert(physical_[order[k]]);
+    }
+    if (!any) return;
+    std::size_t kept = 0;
+    for (std::size_t e = 0; e < cells.size(); ++e) {
+      if (goes[e]) continue;
+      physical_[kept] = groups[e].empty() ? physical_[e] : tag_of_groups(mesh_, {groups[e].begin(), groups[e].end()});
+      cells[kept] = cells[e];
+      entity_[kept] = entity_[e];
+      mesh_.numbers.cell[kept] = mesh_.numbers.cell[e];
+      if (!mesh_.mid_edges.empty()) mesh_.mid_edges[kept] = mesh_.mid_edges[e];
+      ++kept;
+    }
+    cells.resize(kept), physical_.resize(kept), entity_.resize(kept), mesh_.numbers.cell.resize(kept);
+    if (!mesh_.mid_edges.empty()) mesh_.mid_edges.resize(kept);
+  }
+
   void choose_regions() {
+    merge_repeated_cells();
     const auto marks = [](const std::vector<int>& tags) {
       return std::any_of(tags.begin(), tags.end(), [](int tag) { return tag != 0; });
     };
@@ -313,7 +386,7 @@ class GmshReader {
   std::int64_t size_of_size_ = 8;
   std::endian order_ = std::endian::native;
   std::optional<NumberTable> table_;
-  std::map<std::int64_t, int> physical_of_entity_;
+  std::map<std::int64_t, std::set<int>> physical_of_entity_;
   std::vector<int> physical_, entity_;  // of each tet or hexahedron
 };
 

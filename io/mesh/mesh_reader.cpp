@@ -38,7 +38,7 @@ constexpr std::string_view formats_read =
 FileMesh read_tetgen_pair(std::filesystem::path path) {
   if (has_extension(path, ".node") || has_extension(path, ".ele")) path.replace_extension();
   const auto file = [&](const char* extension) { return std::filesystem::path(path).concat(extension); };
-  const std::string nodes = read_bytes(file(".node")), tets = read_bytes(file(".ele"));
+  const std::string nodes = read_text(file(".node")), tets = read_text(file(".ele"));
   Cursor node_cursor(file(".node").string(), nodes, {.separator = '\0', .comment = '#'});
   Cursor ele_cursor(file(".ele").string(), tets, {.separator = '\0', .comment = '#'});
   FileMesh mesh;
@@ -51,7 +51,7 @@ FileMesh read_any(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path, none) &&
       std::filesystem::exists(std::filesystem::path(path).concat(".node"), none))
     return read_tetgen_pair(path);
-  const std::string bytes = read_bytes(path);
+  const std::string bytes = read_text(path);
   const std::string name = path.string();
   const std::string_view word = first_word(bytes), start = Cursor(name, bytes).peek();
   const Cursor::Syntax comments{.separator = '\0', .comment = '#'};
@@ -151,11 +151,12 @@ bool is_reversed(const Mesh& mesh, Index e) {
 template <typename Mesh, std::size_t size>
 Mesh finish(FileMesh& file, std::vector<std::array<Index, size>> cells, const std::string& name, MeshNotes* notes) {
   Mesh mesh;
+  make_regions_of_attributes(file);
   if (file.numbers.node.empty()) {
     file.numbers.node.resize(file.nodes.size());
     std::iota(file.numbers.node.begin(), file.numbers.node.end(), std::int64_t{0});
   }
-  mesh.nodes = keep_nodes_in_use(file.nodes, cells, file.numbers.node);
+  mesh.nodes = keep_nodes_in_use(file.nodes, cells, file.numbers.node, mesh.places);
   if (const Index dropped = static_cast<Index>(file.nodes.size()) - mesh.num_nodes(); dropped > 0)
     file.warnings.push_back(plural(dropped, "node belongs", "nodes belong") + " to no " + cell_word<size> +
                             ": dropped");
@@ -164,6 +165,7 @@ Mesh finish(FileMesh& file, std::vector<std::array<Index, size>> cells, const st
   if (std::any_of(file.region.begin(), file.region.end(), [](int tag) { return tag != 0; })) {
     mesh.region = std::move(file.region);
     mesh.region_names = std::move(file.region_names);
+    mesh.region_groups = std::move(file.region_groups);
   }
   Index num_reversed = 0;
   for (Index e = 0; e < mesh.num_cells(); ++e)

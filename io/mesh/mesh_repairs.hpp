@@ -2,6 +2,7 @@
 /// \file Steps that all mesh readers share: telling a file's kind, dropping unused nodes, counting nodes in one place.
 
 #include <core/types.hpp>
+#include <physics/mesh/mesh_numbers.hpp>
 
 #include <array>
 #include <cstdint>
@@ -27,9 +28,10 @@ Index num_coincident_nodes(const Points& nodes);
 
 /// The nodes that a cell names, in the order of the file; cells and numbers follow.
 /// \param numbers  one a node of the file; becomes one a node that is kept.
+/// \param places  becomes where these stand in the file.
 template <std::size_t size>
 Points keep_nodes_in_use(const std::vector<Point>& nodes, std::vector<std::array<Index, size>>& cells,
-                         std::vector<std::int64_t>& numbers) {
+                         std::vector<std::int64_t>& numbers, NodePlaces& places) {
   std::vector<Index> new_index(nodes.size(), -1);
   for (const std::array<Index, size>& cell : cells)
     for (const Index v : cell) new_index[v] = 0;
@@ -43,6 +45,11 @@ Points keep_nodes_in_use(const std::vector<Point>& nodes, std::vector<std::array
       numbers[new_index[v]] = numbers[v];
     }
   numbers.resize(count);
+  if (count < static_cast<Index>(nodes.size())) {
+    places.count = static_cast<Index>(nodes.size());
+    for (std::size_t v = 0; v < new_index.size(); ++v)
+      if (new_index[v] >= 0) places.of_node.push_back(static_cast<Index>(v));
+  }
   for (std::array<Index, size>& cell : cells)
     for (Index& v : cell) v = new_index[v];
   return kept;

@@ -60,7 +60,7 @@ void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh) {
     mesh.add_tet(std::span(nodes).first(nodes_per_tet));
     double region = 0;
     for (std::int64_t k = 0; k < num_attributes; ++k) region = ele_file.real_in_line("an attribute");
-    if (num_attributes > 0) mesh.region.push_back(to_region(region));
+    if (num_attributes > 0) mesh.attribute.push_back(region);
     ele_file.rest_of_line();
   }
   order_mid_edges(mesh, ele_file);

@@ -143,9 +143,9 @@ class VtuReader {
       cells.region = numbers<double>(array, name);
       break;
     }
-    if (mesh_.num_cells() > 0) cells.region.resize(mesh_.region.empty() ? 0 : num_cells);
+    if (mesh_.num_cells() > 0) cells.region.resize(mesh_.attribute.empty() ? 0 : num_cells);
     add_vtk_cells(cells, first_node, in_, mesh_);
-    if (!mesh_.region.empty()) mesh_.region.resize(mesh_.num_cells());
+    if (!mesh_.attribute.empty()) mesh_.attribute.resize(mesh_.num_cells());
   }
 
   std::uint64_t count(const pugi::xml_node& piece, const char* name) const {

@@ -51,14 +51,17 @@ std::vector<Index> region_nodes(const Mesh& mesh, std::string_view region) {
   }
   std::vector<char> is_member(mesh.num_nodes(), false);
   bool exists = false;
+  std::set<int> tags;  // that are of the region
+  for (const int some : std::set<int>(mesh.region.begin(), mesh.region.end()))
+    if (tag && std::ranges::count(regions_of_tag(mesh, some), *tag) > 0) tags.insert(some);
   for (std::size_t e = 0; e < mesh.region.size(); ++e)
-    if (tag && mesh.region[e] == *tag) {
+    if (tags.contains(mesh.region[e])) {
       exists = true;
       for (const Index v : mesh.cells[e]) is_member[v] = true;
     }
   if (!exists) {
     std::string known;
-    for (const int number : std::set<int>(mesh.region.begin(), mesh.region.end())) {
+    for (const int number : all_regions(mesh)) {
       if (known.size() > 200) {
         known += ", …";
         break;
@@ -132,12 +135,29 @@ std::vector<Index> nodes_of_region(const QuadraticTetMesh& mesh, std::string_vie
   return region_nodes(mesh, region);
 }
 
-std::vector<Index> read_node_set(const Points& nodes, const std::filesystem::path& path) {
-  return read_indices(path, "node", nodes.rows());
+std::vector<Index> nodes_at_places(const std::vector<Index>& list, Index num_nodes, const NodePlaces& places,
+                                   const std::string& source) {
+  const Index count = places.num_places(num_nodes);
+  std::set<Index> nodes;
+  for (const Index place : list) {
+    if (place < 0 || place >= count)
+      throw InputError(source + ": node " + std::to_string(place) + " does not exist: indices are 0 … " +
+                       std::to_string(count - 1));
+    if (const Index v = places.node(place); v >= 0) nodes.insert(v);
+  }
+  if (nodes.empty() && !list.empty()) throw InputError(source + ": no cell has any of the nodes that are listed");
+  return {nodes.begin(), nodes.end()};
 }
 
-std::vector<Index> nodes_with_label(const Points& nodes, const std::filesystem::path& path, int label) {
-  const std::string text = read_bytes(path);
+std::vector<Index> read_node_set(const Points& nodes, const std::filesystem::path& path, const NodePlaces& places) {
+  return nodes_at_places(read_indices(path, "node", places.num_places(nodes.rows())), nodes.rows(), places,
+                         path.string());
+}
+
+std::vector<Index> nodes_with_label(const Points& nodes, const std::filesystem::path& path, int label,
+                                    const NodePlaces& places) {
+  const std::string text = read_text(path);
+  const Index count = places.num_places(nodes.rows());
   std::vector<Index> selected;
   Index node = 0, line_number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -153,12 +173,13 @@ std::vector<Index> nodes_with_label(const Points& nodes, const std::filesystem::
     if (error != std::errc() || rest != line.data() + line.size())
       throw InputError(path.string() + ":" + std::to_string(line_number) +
                        ": expected a whole number, the label of node " + std::to_string(node));
-    if (node < nodes.rows() && value == label) selected.push_back(node);
+    if (value == label && node < count)
+      if (const Index v = places.node(node); v >= 0) selected.push_back(v);
     ++node;
   }
-  if (node != nodes.rows())
+  if (node != count)
     throw InputError(path.string() + ": has " + std::to_string(node) + " labels, expected one for each of the " +
-                     std::to_string(nodes.rows()) + " nodes");
+                     std::to_string(count) + " nodes");
   if (selected.empty()) throw InputError(path.string() + ": no node has the label " + std::to_string(label));
   return selected;
 }

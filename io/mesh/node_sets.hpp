@@ -3,7 +3,9 @@
 
 #include <physics/mesh/cell_mesh.hpp>
 
+#include <algorithm>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,13 +31,36 @@ std::vector<Index> nodes_of_region(const TetMesh& mesh, std::string_view region)
 std::vector<Index> nodes_of_region(const HexMesh& mesh, std::string_view region);
 std::vector<Index> nodes_of_region(const QuadraticTetMesh& mesh, std::string_view region);
 
-/// Node indices from a text file: counted from 0, one a line; '#' begins a comment.
-/// \return ascending, each once.
-/// \throws InputError with the line if one is not in the mesh; or if the file names none.
-std::vector<Index> read_node_set(const Points& nodes, const std::filesystem::path& path);
+/// The regions of a cell of this tag: it, or the groups that it stands for.
+template <typename Mesh>
+std::vector<int> regions_of_tag(const Mesh& mesh, int tag) {
+  const auto groups = mesh.region_groups.find(tag);
+  return groups == mesh.region_groups.end() ? std::vector<int>{tag} : groups->second;
+}
+/// All regions of a mesh: tags of cells, with groups resolved.
+template <typename Mesh>
+std::set<int> all_regions(const Mesh& mesh) {
+  std::set<int> all;
+  for (const int tag : std::set<int>(mesh.region.begin(), mesh.region.end()))
+    for (const int region : regions_of_tag(mesh, tag)) all.insert(region);
+  return all;
+}
 
-/// Nodes with a label, from a text file with one whole number a node, in order of the nodes; '#' begins a comment.
-/// \throws InputError if there are not as many as nodes, one is no whole number, or no node has the label.
-std::vector<Index> nodes_with_label(const Points& nodes, const std::filesystem::path& path, int label);
+/// Nodes whose places in the mesh's file a user has listed; those that no cell has are left out.
+/// \return ascending, each once.
+/// \throws InputError naming `source` if a place is not in the file, or if no cell has any of them.
+std::vector<Index> nodes_at_places(const std::vector<Index>& list, Index num_nodes, const NodePlaces& places,
+                                   const std::string& source);
+
+/// Nodes from a text file that lists their places in the mesh's file: counted from 0, one a line; '#' begins a comment.
+/// \return as nodes_at_places().
+/// \throws InputError with the line if one is not in the file; or if the file names none that a cell has.
+std::vector<Index> read_node_set(const Points& nodes, const std::filesystem::path& path, const NodePlaces& places = {});
+
+/// Nodes with a label, from a text file with one whole number for each node of the mesh's file, in its order; '#' begins a
+/// comment.
+/// \throws InputError if there are not as many as nodes, one is no whole number, or no node of a cell has the label.
+std::vector<Index> nodes_with_label(const Points& nodes, const std::filesystem::path& path, int label,
+                                    const NodePlaces& places = {});
 
 }  // namespace supple

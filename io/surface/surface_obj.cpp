@@ -1,5 +1,6 @@
 #include <io/surface/surface_formats.hpp>
 
+#include <cctype>
 #include <charconv>
 
 namespace supple {
@@ -27,10 +28,6 @@ void read_face(Cursor& in, FileSurface& surface, Announced& announced) {
     const std::size_t position = in.position();
     const std::string_view word = in.word_in_line();
     if (word.empty()) break;
-    if (word == "\\") {  // the line goes on in the next one
-      in.rest_of_line();
-      continue;
-    }
     const std::int64_t number = node_number(in, word);
     if (number < -num_nodes)
       in.fail("node " + std::to_string(number) + " does not exist: " + std::to_string(num_nodes) +
@@ -61,6 +58,8 @@ void read_obj(Cursor& in, FileSurface& surface) {
       ++surface.num_lower;
     } else if (keyword == "surf" || keyword == "curv") {
       in.fail("free-form surfaces are not read; save the object as triangles");
+    } else if (!std::isalpha(static_cast<unsigned char>(keyword.front()))) {
+      in.fail("expected a keyword such as v or f, found \"" + std::string(keyword.substr(0, 40)) + "\"");
     }
     in.rest_of_line();
   }

@@ -23,25 +23,24 @@ namespace {
 }
 
 FileSurface read_any(const std::filesystem::path& path) {
-  const std::string bytes = read_bytes(path), name = path.string();
+  const std::string bytes = read_text(path), name = path.string();
   const std::string_view word = first_word(bytes);
   const auto is_word = [&](std::initializer_list<std::string_view> words) {
     return std::find(words.begin(), words.end(), word) != words.end();
   };
   FileSurface surface;
-  Cursor plain(name, bytes), with_comments(name, bytes, {.separator = '\0', .comment = '#'});
+  Cursor plain(name, bytes), with_comments(name, bytes, {.separator = '\0', .comment = '#'}),
+      with_continuation(name, bytes, {.separator = '\0', .comment = '#', .continuation = '\\'});
   if (word == "ply")
     read_ply(plain, surface);
   else if (is_off_keyword(word))
     read_off(with_comments, surface);
-  else if (is_binary_stl(bytes))
+  else if (is_binary_stl(bytes) || (has_extension(path, ".stl") && word != "solid" && word != "SOLID"))
     read_binary_stl(plain, surface);
   else if (word == "solid" || word == "SOLID")
     read_ascii_stl(plain, surface);
-  else if (has_extension(path, ".stl"))
-    read_binary_stl(plain, surface);
   else if (is_word({"v", "vn", "vt", "f", "o", "g", "s", "mtllib", "usemtl"}) || has_extension(path, ".obj"))
-    read_obj(with_comments, surface);
+    read_obj(with_continuation, surface);
   else
     refuse_unknown(name, bytes);
   return surface;
@@ -135,7 +134,7 @@ TriangleMesh read_triangle_mesh(const std::filesystem::path& path, MeshNotes* no
   if (mesh.triangles.empty()) throw InputError(name + ": holds no triangles");
   numbers.node.resize(file.nodes.size());
   std::iota(numbers.node.begin(), numbers.node.end(), file.first_number);
-  mesh.nodes = keep_nodes_in_use(file.nodes, mesh.triangles, numbers.node);
+  mesh.nodes = keep_nodes_in_use(file.nodes, mesh.triangles, numbers.node, mesh.places);
   if (const Index dropped = static_cast<Index>(file.nodes.size()) - mesh.num_nodes(); dropped > 0)
     file.warnings.push_back(plural(dropped, "node belongs", "nodes belong") + " to no triangle: dropped");
   try {

@@ -65,7 +65,9 @@ bool is_binary_stl(std::string_view bytes) {
   Cursor in("", bytes);
   in.set_binary(std::endian::little);
   in.set_position(80);
-  return bytes.size() == 84 + 50 * std::uint64_t{in.take<std::uint32_t>("a count")};
+  const std::uint64_t size = 84 + 50 * std::uint64_t{in.take<std::uint32_t>("a count")};
+  // Headers of binary files may begin with "solid", and bytes may follow; but no text has zeros.
+  return bytes.size() == size || (bytes.size() > size && bytes.substr(0, size).find('\0') != std::string_view::npos);
 }
 
 /// Normals are not read: those of the corners count. \see 3D Systems 1988, "Stereolithography Interface
@@ -88,6 +90,9 @@ void read_binary_stl(Cursor& in, FileSurface& surface) {
     surface.end_face();
     in.take<std::uint16_t>("an attribute");
   }
+  if (in.num_left() > 0)
+    surface.warnings.push_back(std::to_string(in.num_left()) + " bytes follow the last of the " +
+                               std::to_string(num_facets) + " facets that the file announces: left out");
   tell_of_merging(surface);
 }
 

@@ -39,11 +39,25 @@ std::string read_bytes(const std::filesystem::path& path) {
   return bytes;
 }
 
+std::string read_text(const std::filesystem::path& path) {
+  std::string bytes = read_bytes(path);
+  if (bytes.starts_with("\xef\xbb\xbf")) bytes.erase(0, 3);
+  return bytes;
+}
+
+std::size_t Cursor::continuation() const {
+  if (syntax_.continuation == '\0' || bytes_[position_] != syntax_.continuation) return 0;
+  const std::string_view rest = bytes_.substr(position_ + 1, 2);
+  return rest.starts_with('\n') ? 2 : rest == "\r\n" ? 3 : 0;
+}
+
 void Cursor::skip_blanks(bool over_lines) {
   while (position_ < bytes_.size()) {
     const char c = bytes_[position_];
     if (c == '\n' && !over_lines) return;
-    if (is_blank(c))
+    if (const std::size_t mark = continuation())
+      position_ += mark;
+    else if (is_blank(c))
       ++position_;
     else if (c == syntax_.comment && c != '\0')
       position_ = std::min(bytes_.find('\n', position_), bytes_.size());
@@ -61,7 +75,7 @@ std::string_view Cursor::word_in_line() {
   skip_blanks(/*over_lines=*/false);
   word_ = position_;
   while (position_ < bytes_.size() && !is_blank(bytes_[position_]) &&
-         (bytes_[position_] != syntax_.comment || syntax_.comment == '\0'))
+         (bytes_[position_] != syntax_.comment || syntax_.comment == '\0') && continuation() == 0)
     ++position_;
   return bytes_.substr(word_, position_ - word_);
 }

@@ -18,14 +18,18 @@ namespace supple {
 /// The whole content of a file. \throws InputError if it cannot be read.
 std::string read_bytes(const std::filesystem::path& path);
 
+/// The same of a text: without the byte order mark that some programs put before UTF-8.
+std::string read_text(const std::filesystem::path& path);
+
 /// Reads words and numbers of a text, or numbers of fixed size of a binary file, in turn. Nothing is
 /// allocated for what a file announces before expect_room has seen that the file can hold it. The bytes must
 /// outlive the cursor.
 class Cursor {
  public:
-  /// What separates words besides white space, and what begins a comment up to the end of its line.
+  /// What separates words besides white space, what begins a comment up to the end of its line, and what has a line go on in
+  /// the next when it is its last character.
   struct Syntax {
-    char separator = '\0', comment = '\0';  // '\0': nothing does
+    char separator = '\0', comment = '\0', continuation = '\0';  // '\0': nothing does
   };
 
   Cursor(std::string name, std::string_view bytes) : Cursor(std::move(name), bytes, Syntax{}) {}
@@ -81,6 +85,8 @@ class Cursor {
 
  private:
   void skip_blanks(bool over_lines);
+  /// Length of a mark here that the line goes on, with the line's end; 0: there is none.
+  std::size_t continuation() const;
   bool is_blank(char c) const { return static_cast<unsigned char>(c) <= ' ' || (c == syntax_.separator && c != '\0'); }
   std::int64_t to_integer(std::string_view word, std::string_view what) const;
   double to_real(std::string_view word, std::string_view what) const;

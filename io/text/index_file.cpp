@@ -7,7 +7,7 @@
 namespace supple {
 
 std::vector<Index> read_indices(const std::filesystem::path& path, std::string_view what, Index count) {
-  const std::string bytes = read_bytes(path), name(what);
+  const std::string bytes = read_text(path), name(what);
   Cursor in(path.string(), bytes, {.separator = '\0', .comment = '#'});
   std::vector<Index> indices;
   while (!in.peek().empty()) {

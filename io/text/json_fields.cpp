@@ -188,6 +188,10 @@ bool JsonFields::is_null(std::string_view key) const {
   return field(key).value.is_null();
 }
 
+bool JsonFields::is_number(std::string_view key) const {
+  return field(key).value.is_number();
+}
+
 double JsonFields::number(std::string_view key, const Interval& range, std::string_view unit) const {
   return field(key).number(range, unit);
 }

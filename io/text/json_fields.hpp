@@ -49,6 +49,7 @@ class JsonFields {
 
   bool contains(std::string_view key) const;
   bool is_null(std::string_view key) const;
+  bool is_number(std::string_view key) const;  ///< rather than a text with a unit
   const std::string& source() const;
   /// Where this object stands, "/springs/2"; empty for the outermost.
   const std::string& place() const { return place_; }

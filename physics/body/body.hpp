@@ -28,6 +28,10 @@ inline const Points& node_positions(const Body& body) {  ///< at rest, n × 3 [m
 inline Index num_nodes(const Body& body) {
   return node_positions(body).rows();
 }
+/// Where they stand in the user's file.
+inline const NodePlaces& node_places(const Body& body) {
+  return std::visit([](const auto& b) -> const NodePlaces& { return b.mesh.places; }, body);
+}
 inline const std::vector<Index>& fixed_nodes(const Body& body) {
   return std::visit([](const auto& b) -> const std::vector<Index>& { return b.fixed_nodes; }, body);
 }

@@ -290,6 +290,7 @@ QuadraticTetMesh quadratic_mesh(const TetMesh& mesh) {
   result.cells.resize(mesh.cells.size());
   result.region = mesh.region;
   result.region_names = mesh.region_names;
+  result.region_groups = mesh.region_groups;
   std::vector<std::array<Index, 2>> edges(edges_per_tet * mesh.cells.size());
   for (Index id = 0; id < static_cast<Index>(edges.size()); ++id) {
     const auto [a, b] = QuadraticTet::edges[id % edges_per_tet];

@@ -24,6 +24,9 @@ struct CellMesh {
   std::vector<std::array<Index, size>> cells = {};  ///< m, positively oriented
   std::vector<int> region = {};                     ///< one tag a cell, or empty
   std::map<int, std::string> region_names = {};
+  /// The groups of cells that are in several: by a tag that only these cells have, the tags of their groups.
+  std::map<int, std::vector<int>> region_groups = {};
+  NodePlaces places = {};  ///< of the nodes in their file
 
   Index num_nodes() const { return nodes.rows(); }
   Index num_cells() const { return static_cast<Index>(cells.size()); }

@@ -1,6 +1,9 @@
 #pragma once
-/// \file Numbers by which messages call the parts of a mesh.
+/// \file Numbers by which messages and users call the parts of a mesh.
 
+#include <core/types.hpp>
+
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -10,6 +13,23 @@ namespace supple {
 /// hexahedra and the like.
 struct MeshNumbers {
   std::vector<std::int64_t> node = {}, cell = {}, triangle = {};
+};
+
+/// Where the nodes of a mesh stand in the list of the file that it was read from. The two differ where the file lists nodes
+/// that no cell has, which are dropped. Users, and the files that they write, call nodes by these places, from 0.
+struct NodePlaces {
+  std::vector<Index> of_node = {};  ///< ascending, one a node; empty: a node's index is its place
+  Index count = 0;                  ///< nodes of the file, where `of_node` is not empty
+
+  Index num_places(Index num_nodes) const { return of_node.empty() ? num_nodes : count; }
+  Index place(Index node) const { return of_node.empty() ? node : of_node[static_cast<std::size_t>(node)]; }
+  /// The node in a place; −1 if no cell has it.
+  Index node(Index place) const {
+    if (of_node.empty()) return place;
+    const auto at = std::ranges::lower_bound(of_node, place);
+    return at == of_node.end() || *at != place ? -1 : at - of_node.begin();
+  }
+  bool operator==(const NodePlaces&) const = default;
 };
 
 }  // namespace supple

@@ -20,6 +20,7 @@ using Triangle = std::array<Index, 3>;
 struct TriangleMesh {
   Points nodes;                     ///< n × 3 [m]
   std::vector<Triangle> triangles;  ///< normal (b − a) × (c − a)
+  NodePlaces places = {};           ///< of the nodes in their file
 
   Index num_nodes() const { return nodes.rows(); }
   Index num_triangles() const { return static_cast<Index>(triangles.size()); }

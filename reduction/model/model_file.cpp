@@ -47,6 +47,10 @@ constexpr const char *component_key = "component", *gauss_point = "gauss-point";
 template <typename Mesh>
 void add_body(TensorFileWriter& file, const SolidOf<Mesh>& solid) {
   for (const auto& [tag, name] : solid.mesh.region_names) file.metadata["region." + std::to_string(tag)] = name;
+  for (const auto& [tag, groups] : solid.mesh.region_groups) {
+    std::string& list = file.metadata["region_groups." + std::to_string(tag)];
+    for (const int group : groups) list += (list.empty() ? "" : " ") + std::to_string(group);
+  }
   if (!std::same_as<Mesh, TetMesh> && solid.component == SolidComponent::GaussPoint)
     file.metadata[component_key] = gauss_point;
   file.add(arrays<Mesh>.cells, narrow(solid.mesh.cells));
@@ -155,6 +159,13 @@ SolidOf<Mesh> read_solid(const ModelReader& in, Points nodes) {
   }
   for (const auto& [key, text] : in.file.metadata())
     if (key.starts_with("region.")) solid.mesh.region_names[in.whole_number(key, key.substr(7))] = text;
+  constexpr std::string_view groups = "region_groups.";
+  for (const auto& [key, text] : in.file.metadata())
+    if (key.starts_with(groups)) {
+      std::vector<int>& list = solid.mesh.region_groups[in.whole_number(key, key.substr(groups.size()))];
+      std::istringstream words(text);
+      for (std::string word; words >> word;) list.push_back(in.whole_number(key, word));
+    }
   solid.law = in.file.metadata("material.law");
   solid.parameters = in.finite_matrix("material.parameters");
   if (in.file.contains(arrays<Mesh>.material)) {
@@ -163,6 +174,20 @@ SolidOf<Mesh> read_solid(const ModelReader& in, Points nodes) {
   }
   solid.density = in.finite_vector("density");
   return solid;
+}
+
+NodePlaces read_places(const ModelReader& in, Index num_nodes) {
+  constexpr const char *name = "mesh.node_places", *count = "mesh.nodes_of_file";
+  NodePlaces places;
+  if (!in.file.contains(name)) return places;
+  places.count = in.whole_number(count, in.file.metadata(count));
+  const std::vector<std::int64_t> list = in.file.integers(name);
+  places.of_node.assign(list.begin(), list.end());
+  if (static_cast<Index>(list.size()) != num_nodes || !std::ranges::is_sorted(list, std::less_equal()) ||
+      (!list.empty() && (list.front() < 0 || list.back() >= places.count)))
+    throw in.fail(std::string(name) + " are not " + std::to_string(num_nodes) + " ascending numbers from 0 to " +
+                  std::to_string(places.count - 1));
+  return places;
 }
 
 Shell read_shell(const ModelReader& in, Points nodes) {
@@ -250,6 +275,10 @@ void save_model(const std::filesystem::path& path, const ReducedModel& model) {
                    {"subspace.name", model.subspace_name}};
   for (const auto& [key, text] : model.provenance) file.metadata["provenance." + key] = text;
   file.add("mesh.nodes", node_positions(model.body));
+  if (const NodePlaces& places = node_places(model.body); !places.of_node.empty()) {
+    file.add("mesh.node_places", widen(places.of_node));
+    file.metadata["mesh.nodes_of_file"] = std::to_string(places.count);
+  }
   std::visit([&](const auto& body) { add_body(file, body); }, model.body);
   file.add("fixed_nodes", widen(fixed_nodes(model.body)));
   file.add("damping", (Vector(2) << damping(model.body).alpha, damping(model.body).beta).finished());
@@ -294,6 +323,7 @@ ReducedModel load_model(const std::filesystem::path& path) {
     if (key.starts_with("provenance.")) model.provenance[key.substr(11)] = text;
   std::visit(
       [&](auto& body) {
+        body.mesh.places = read_places(in, n);
         for (const std::int64_t v : file.integers("fixed_nodes")) {
           if (v < 0 || v >= n)
             throw in.fail("fixed_nodes names node " + std::to_string(v) + ", expected 0 to " + std::to_string(n - 1));

@@ -142,6 +142,20 @@ TEST_F(EditCommandTest, TakesHandlesByLabelsAndMotionsByMatrix) {
   EXPECT_GT(report["elastic_energy"], 0.0);
 }
 
+TEST_F(EditCommandTest, SaysWhatAnAngleOfManyTurnsIs) {
+  reduce();
+  const auto warning = [&](const std::string& angle) {
+    write("scene.json", R"({"handles": [{"name": "a", "nodes": "x>90%"}, {"name": "b", "nodes": "x<10%"}],
+      "edits": [{"moves": [{"handle": "a", "axis": [1, 0, 0], "angle": )" +
+                            angle + "}]}]}");
+    return supple({"edit", "bar.supple", "--scene", "scene.json"}).err;
+  };
+  EXPECT_THAT(warning("30"),
+              HasSubstr("/edits/0/moves/0/angle is 30 rad, more than a whole turn; degrees are written as \"30 deg\""));
+  EXPECT_THAT(warning("0.1"), testing::Not(HasSubstr("turn")));
+  EXPECT_THAT(warning("\"400 deg\""), testing::Not(HasSubstr("more than a whole turn")));
+}
+
 TEST_F(EditCommandTest, RefusesBadScenesInOneLineAndLeavesNothing) {
   reduce();
   const auto refuse = [&](const std::string& scene, const std::vector<std::string>& parts) {

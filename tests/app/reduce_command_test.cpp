@@ -1,6 +1,8 @@
 #include <core/random.hpp>
 #include <core/tensor_file.hpp>
+#include <io/mesh/mesh_reader.hpp>
 #include <io/picture/image.hpp>
+#include <io/table/csv.hpp>
 #include <reduction/model/reduced_model.hpp>
 #include <tests/app/supple_process.hpp>
 
@@ -8,6 +10,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <sstream>
 
 namespace supple::test {
 
@@ -286,6 +289,108 @@ TEST_F(ReduceCommandTest, GivesRegionsTheirOwnMaterials) {
   write("materials.json", R"({"regions": {"2": {"yung": "1 MPa"}}})");
   expect_refusal(job, {"materials.json", "yung", "young"});
   EXPECT_THAT(files(), ElementsAre("materials.json", "two.mesh"));
+}
+
+/// A bar of 96 tets whose file begins with nodes that no tet has, four before each layer of the bar.
+TEST_F(ReduceCommandTest, CallsNodesAsTheUsersFileDoes) {
+  ASSERT_EQ(supple({"mesh", "bar:4x2x2", "-o", "bar.vtu"}).exit_code, 0);
+  const TetMesh bar = read_tet_mesh(folder / "bar.vtu");
+  std::ostringstream file;
+  file << "MeshVersionFormatted 2\nDimension 3\nVertices\n" << bar.num_nodes() + 20 << "\n";
+  std::vector<Index> place;
+  Index count = 0;
+  for (Index v = 0; v < bar.num_nodes(); ++v) {
+    if (v % 9 == 0)
+      for (int k = 0; k < 4; ++k, ++count) file << "99 99 99 0\n";
+    place.push_back(count++);
+    file << bar.nodes(v, 0) << " " << bar.nodes(v, 1) << " " << bar.nodes(v, 2) << " 0\n";
+  }
+  file << "Tetrahedra\n" << bar.num_cells() << "\n";
+  for (const Tet& tet : bar.cells) {
+    for (const Index v : tet) file << place[v] + 1 << " ";
+    file << "0\n";
+  }
+  write("more.mesh", file.str());
+  std::string list;
+  Index tip = 0;
+  for (Index v = 0; v < bar.num_nodes(); ++v) {
+    if (bar.nodes(v, 0) == 0) list += std::to_string(place[v]) + "\n";
+    if (bar.nodes.row(v).sum() > bar.nodes.row(tip).sum()) tip = v;
+  }
+  write("held.txt", list);
+  const Arguments more{"--modes", "4", "--poses", "20", "--points", "30", "--held-out", "0", "--recipe", "subspace"};
+  const auto reduced = [&](Arguments job) {
+    job.insert(job.end(), more.begin(), more.end());
+    const Outcome outcome = supple(job);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  };
+  reduced({"reduce", "bar.vtu", "-o", "plain.supple", "--fix", "x<=0"});
+  reduced({"reduce", "more.mesh", "-o", "more.supple", "--fix-file", "held.txt"});
+  const auto displacement = [&](const std::string& model, Index node) -> Vector {
+    const std::string name = std::to_string(node);
+    write("pull.json", R"({"duration": 0.1, "step": 0.02, "forces": [{"node": )" + name +
+                           R"(, "force": [0, 0, 1]}], "output": {"track": [)" + name + "]}}");
+    (void)report({"simulate", model, "--scene", "pull.json", "-o", "run", "--frames", "none"});
+    return read_csv(folder / "run/tracked.csv").numbers("uz" + name);
+  };
+  const Vector plain = displacement("plain.supple", tip), moved = displacement("more.supple", place[tip]);
+  EXPECT_GT(plain.maxCoeff(), 0);
+  EXPECT_NEAR((plain - moved).norm(), 0, 1e-9 * plain.norm());
+  write("pull.json", R"({"forces": [{"node": 0, "force": [0, 0, 1]}]})");
+  expect_refusal({"simulate", "more.supple", "--scene", "pull.json"}, {"/forces/0/node is 0", "no cell has"});
+  expect_refusal({"simulate", "more.supple", "--track", "0"}, {"--track", "no cell has node 0"});
+}
+
+TEST_F(ReduceCommandTest, RefusesMaterialsThatContradictInCellsOfSeveralGroups) {
+  write("two.msh",
+        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 20 \"left\"\n3 30 \"all\"\n$EndPhysicalNames\n"
+        "$Entities\n0 0 0 2\n1 0 0 0 1 1 1 2 20 30 0\n2 0 0 0 1 1 1 1 30 0\n$EndEntities\n$Nodes\n1 5 1 5\n3 1 0 "
+        "5\n1\n2\n3\n"
+        "4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 -1\n$EndNodes\n$Elements\n2 2 1 2\n3 1 4 1\n1 1 2 3 4\n3 2 4 1\n2 1 3 2 "
+        "5\n"
+        "$EndElements\n");
+  const json regions = report({"info", "two.msh"})["regions"];
+  EXPECT_EQ(regions.size(), 2u);
+  EXPECT_EQ(regions[0]["tets"], 1);
+  EXPECT_EQ(regions[1]["tets"], 2);
+  const Arguments job{"reduce", "two.msh", "-o", "two.supple", "--modes", "7", "--materials", "materials.json"};
+  write("materials.json", R"({"regions": {"left": {"young": "1 MPa"}, "all": {"young": "2 MPa"}}})");
+  expect_refusal(job, {"materials.json", "'left'", "'all'", "differ"});
+}
+
+TEST_F(ReduceCommandTest, TakesSnapshotsOfAllNodesWithRoundingWhereTheyAreHeld) {
+  const Index nodes = 9 * 3 * 3, held = 9, count = 8;  // at x = 0
+  Random random(1);
+  Matrix snapshots(3 * nodes, count);
+  for (double& x : snapshots.reshaped()) x = 0.01 * random.normal();
+  const auto job = [&](double at_held) {
+    snapshots.topRows(3 * held).setConstant(at_held);
+    TensorFileWriter tensors;
+    tensors.add("poses", snapshots);
+    tensors.write(folder / "snapshots.safetensors");
+    return Arguments{"reduce",     "bar:8x2x2", "-o",         "pca.supple", "--fix",       "x<=0",
+                     "--subspace", "pca",       "--points",   "100",        "--snapshots", "snapshots.safetensors",
+                     "--poses",    "20",        "--held-out", "0"};
+  };
+  EXPECT_EQ(report(job(1e-18))["dimension"], count);
+  expect_refusal(job(0.01), {"node 0, which is fixed"}, 2);
+  snapshots.transposeInPlace();
+  TensorFileWriter tensors;
+  tensors.add("poses", snapshots);
+  tensors.write(folder / "turned.safetensors");
+  expect_refusal({"reduce", "bar:8x2x2", "-o", "x.supple", "--subspace", "pca", "--snapshots", "turned.safetensors"},
+                 {"turned.safetensors", "8 x 243", "expected 243 rows", "transposed"});
+}
+
+TEST_F(ReduceCommandTest, BlamesTheCandidatesWhereTheyAreTheLimit) {
+  write("three.txt", "1\n50\n100\n");
+  const Outcome outcome =
+      supple({"reduce",         "bar:8x2x2", "-o",         "bar.supple", "--fix",        "x<=0",
+              "--modes",        "2",         "--subspace", "modal",      "--poses",      "20",
+              "--held-out",     "0",         "--recipe",   "subspace",   "--candidates", "three.txt",
+              "--target-error", "1e-6"});
+  EXPECT_THAT(outcome.err, HasSubstr("3 candidates"));
+  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("more --points than")));
 }
 
 TEST_F(ReduceCommandTest, FitsPosesOfAFile) {

@@ -293,6 +293,30 @@ TEST_F(SimulateCommandTest, AcceptsEachWayToNameThings) {
   EXPECT_LT((along_path - by_displacement).cwiseAbs().maxCoeff(), 1e-7 * to_target.cwiseAbs().maxCoeff());
 }
 
+TEST_F(SimulateCommandTest, SaysWhatActsOnNodesThatAreHeld) {
+  reduce_bar();
+  const auto warning = [&](const std::string& scene) {
+    write("scene.json", scene);
+    const Outcome outcome = supple({"simulate", "bar.supple", "--scene", "scene.json"});
+    EXPECT_EQ(outcome.exit_code, 0);
+    return outcome.err;
+  };
+  const std::string start = R"({"duration": 0.1, "step": 0.05, )";
+  EXPECT_THAT(warning(start + R"("forces": [{"nodes": "x<=0", "force": [0, 0, 100]}]})"),
+              HasSubstr("/forces/0: 100 % of this force acts on nodes that the model holds"));
+  EXPECT_THAT(warning(start + R"("springs": [{"node": 0, "stiffness": 1}]})"), HasSubstr("100 % of this spring"));
+  // a half and a whole layer of mass
+  EXPECT_THAT(warning(start + R"("forces": [{"nodes": "x<20%", "force": [0, 0, 1]}]})"),
+              HasSubstr("33.3 % of this force"));
+  EXPECT_EQ(warning(start + R"("forces": [{"nodes": "x>0", "force": [0, 0, 1]}]})"), "");
+}
+
+TEST_F(SimulateCommandTest, TakesOneStepWhereTheDefaultStepIsLongerThanTheScene) {
+  reduce_bar();
+  write("short.json", R"({"duration": 1e-5})");
+  EXPECT_EQ(report({"simulate", "bar.supple", "--scene", "short.json"})["steps"], 1);
+}
+
 /// A stiff spring wins: the node ends where the spring pulls it, reduced and full.
 TEST_F(SimulateCommandTest, SpringsPullNodesToTheirTargets) {
   reduce_bar({"--damping-alpha", "20"});
@@ -353,6 +377,10 @@ TEST_F(SimulateCommandTest, RefusesBadScenesInOneLineAndLeavesNothing) {
   refuse(R"({"forces": [{"node": 81, "force": [0, 0, 1]}]})", {"/forces/0/node", "81", "80"});
   refuse(R"({"forces": [{"nodes": "x>9", "force": [0, 0, 1]}]})", {"/forces/0/nodes", "x>9"});
   refuse(R"({"forces": [{"node": 1, "force": [0, 0, 1], "from": 2, "until": 1}]})", {"/forces/0/until"});
+  refuse(R"({"forces": [{"nodes": [1, 2, 3], "force": [0, 0, 1]}]})", {"/forces/0/nodes", "list of 3", "text"});
+  refuse(R"({"forces": [{"at": [1000, 0, 0], "force": [0, 0, 1]}]})", {"/forces/0/at", "999 m", "metres"});
+  refuse(R"({"springs": [{"at": [0, 60, 0], "stiffness": 1}]})", {"/springs/0/at", "metres"});
+  refuse(R"({"duration": 0.01, "step": 0.1})", {"step is 0.1 s", "duration of 0.01 s"});
   refuse(R"({"springs": [{"node": 1, "stiffness": 0}]})", {"/springs/0/stiffness"});
   refuse(R"({"springs": [{"node": 1, "stiffness": 1, "target": [0, 0, 0], "displacement": [0, 0, 0]}]})",
          {"/springs/0"});

@@ -1,4 +1,5 @@
 #include <core/check.hpp>
+#include <core/text.hpp>
 #include <io/mesh/node_sets.hpp>
 #include <numerics/optimize/solver_names.hpp>
 #include <viewer/scene/edit_scene_file.hpp>
@@ -6,7 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace supple {
 
@@ -17,15 +20,14 @@ int read_label(const JsonFields& fields) {
   return static_cast<int>(fields.integer("label", between(Limits::min(), Limits::max())));
 }
 
-std::vector<Index> listed_nodes(const JsonFields& fields, const Points& nodes) {
-  std::vector<Index> list = fields.integers("indices", between(0, static_cast<double>(nodes.rows() - 1)));
-  std::ranges::sort(list);
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-  return list;
+std::vector<Index> listed_nodes(const JsonFields& fields, const Points& nodes, const NodePlaces& places) {
+  const Interval range = between(0, static_cast<double>(places.num_places(nodes.rows()) - 1));
+  return nodes_at_places(fields.integers("indices", range), nodes.rows(), places, fields.source());
 }
 
 /// \param folder  where files are looked for; null: there are none.
-HandleRegion read_handle(const JsonFields& fields, const std::filesystem::path* folder, const Points& nodes) {
+HandleRegion read_handle(const JsonFields& fields, const std::filesystem::path* folder, const Points& nodes,
+                         const NodePlaces& places) {
   HandleRegion handle;
   handle.name = fields.text("name");
   if (fields.contains("nodes") + fields.contains("indices") + fields.contains("box") + fields.contains("file") != 1)
@@ -35,13 +37,13 @@ HandleRegion read_handle(const JsonFields& fields, const std::filesystem::path* 
     if (fields.contains("nodes"))
       handle.nodes = select_nodes(nodes, fields.text("nodes"));
     else if (fields.contains("indices"))
-      handle.nodes = listed_nodes(fields, nodes);
+      handle.nodes = listed_nodes(fields, nodes, places);
     else if (fields.contains("box"))
       handle.nodes = nodes_in_box(nodes, fields.text("box"));
     else if (fields.contains("label"))
-      handle.nodes = nodes_with_label(nodes, *folder / fields.text("file"), read_label(fields));
+      handle.nodes = nodes_with_label(nodes, *folder / fields.text("file"), read_label(fields), places);
     else
-      handle.nodes = read_node_set(nodes, *folder / fields.text("file"));
+      handle.nodes = read_node_set(nodes, *folder / fields.text("file"), places);
   } catch (const InputError& error) {
     if (std::string_view(error.what()).starts_with(fields.source())) throw;
     throw InputError(fields.source() + ": " + fields.place() + ": " + error.what());
@@ -52,7 +54,22 @@ HandleRegion read_handle(const JsonFields& fields, const std::filesystem::path* 
   return handle;
 }
 
-RigidMotion read_motion(const JsonFields& fields, const HandleRegion& handle, const Points& nodes) {
+/// What a scene is read with.
+struct Reading {
+  const std::filesystem::path* folder;  // where files are looked for; null: there are none
+  std::vector<std::string>* warnings;   // null: not wanted
+};
+
+double read_angle(const JsonFields& fields, const Reading& reading) {
+  const double angle = fields.number("angle", any_number, "rad");
+  if (reading.warnings && fields.is_number("angle") && std::abs(angle) > 2 * std::numbers::pi)
+    reading.warnings->push_back(fields.source() + ": " + fields.place() + "/angle is " + shown(angle) +
+                                " rad, more than a whole turn; degrees are written as \"" + shown(angle) + " deg\"");
+  return angle;
+}
+
+RigidMotion read_motion(const JsonFields& fields, const HandleRegion& handle, const Points& nodes,
+                        const Reading& reading) {
   if (fields.contains("matrix")) {
     for (const char* other : {"axis", "angle", "centre", "translation"})
       if (fields.contains(other)) fields.fail(other, "stands beside 'matrix', which says it all");
@@ -73,17 +90,16 @@ RigidMotion read_motion(const JsonFields& fields, const HandleRegion& handle, co
   }
   const Point axis = fields.point("axis", "1"), mean = nodes(handle.nodes, Eigen::all).colwise().mean().transpose();
   if (!(axis.norm() > 0)) fields.fail("axis", "has no direction");
-  return RigidMotion::turn(axis, fields.number("angle", any_number, "rad"), fields.point_or("centre", mean),
-                           translation);
+  return RigidMotion::turn(axis, read_angle(fields, reading), fields.point_or("centre", mean), translation);
 }
 
-EditScene read_scene(const JsonFields& file, const Body& body, const std::filesystem::path* folder) {
+EditScene read_scene(const JsonFields& file, const Body& body, const Reading& reading) {
   const Points& nodes = node_positions(body);
   EditScene scene;
   scene.description = file.text_or("description", "");
   scene.seed = static_cast<std::uint64_t>(file.integer_or("seed", 1, non_negative));
   for (const JsonFields& fields : file.objects("handles")) {
-    scene.handles.push_back(read_handle(fields, folder, nodes));
+    scene.handles.push_back(read_handle(fields, reading.folder, nodes, node_places(body)));
     std::erase_if(scene.handles.back().nodes,
                   [&](Index v) { return std::ranges::binary_search(fixed_nodes(body), v); });
     if (scene.handles.back().nodes.empty())
@@ -100,7 +116,7 @@ EditScene read_scene(const JsonFields& file, const Body& body, const std::filesy
       const auto handle = std::find_if(scene.handles.begin(), scene.handles.end(),
                                        [&](const HandleRegion& some) { return some.name == name; });
       if (handle == scene.handles.end()) move.fail("handle", "is '" + name + "', which is no handle of this scene");
-      edit.moves.emplace_back(handle - scene.handles.begin(), read_motion(move, *handle, nodes));
+      edit.moves.emplace_back(handle - scene.handles.begin(), read_motion(move, *handle, nodes, reading));
     }
     scene.edits.push_back(std::move(edit));
   }
@@ -116,24 +132,25 @@ EditScene read_scene(const JsonFields& file, const Body& body, const std::filesy
 
 }  // namespace
 
-EditScene read_edit_scene(const std::filesystem::path& path, const Body& body) {
+EditScene read_edit_scene(const std::filesystem::path& path, const Body& body, std::vector<std::string>* warnings) {
   const JsonFields file = JsonFields::read(path);
   const std::filesystem::path folder = path.parent_path();
-  EditScene scene = read_scene(file, body, &folder);
+  EditScene scene = read_scene(file, body, {&folder, warnings});
   if (scene.description.empty()) scene.description = path.filename().string();
   file.finish();
   return scene;
 }
 
 EditScene read_edit_scene(const JsonFields& scene, const Body& body) {
-  return read_scene(scene, body, nullptr);
+  return read_scene(scene, body, {nullptr, nullptr});
 }
 
-nlohmann::ordered_json edit_scene_json(const EditScene& scene) {
+nlohmann::ordered_json edit_scene_json(const EditScene& scene, const NodePlaces& places) {
   using Json = nlohmann::ordered_json;
   Json json{{"description", scene.description}, {"seed", scene.seed}, {"handles", Json::array()}};
   for (const HandleRegion& region : scene.handles) {
-    Json handle{{"name", region.name}, {"indices", region.nodes}};
+    Json handle{{"name", region.name}, {"indices", Json::array()}};
+    for (const Index v : region.nodes) handle["indices"].push_back(places.place(v));
     if (region.samples) handle["samples"] = *region.samples;
     if (region.weight) handle["weight"] = *region.weight;
     if (!region.movable) handle["movable"] = false;

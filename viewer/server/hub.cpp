@@ -246,7 +246,7 @@ void Hub::follow(ViewSession& session, const Job& job) {
         session.apply(job.client, *job.request);
         break;
       case Job::Kind::Save:
-        answer = saved_text(session.edit().scene());
+        answer = saved_text(session.edit().scene(), node_places(session.model().model.body));
         break;
       case Job::Kind::Join:
         session.join(job.client);

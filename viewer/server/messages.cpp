@@ -266,9 +266,9 @@ std::string warning_text(std::string_view text) {
   return text_of(json);
 }
 
-std::string saved_text(const EditScene& scene) {
+std::string saved_text(const EditScene& scene, const NodePlaces& places) {
   Json json = say("saved");
-  json["scene"] = edit_scene_json(scene);
+  json["scene"] = edit_scene_json(scene, places);
   return text_of(json);
 }
 

@@ -56,7 +56,7 @@ std::string ready_text();
 std::string progress_text(std::string_view stage, double share);
 std::string refused_text(std::string_view action, std::string_view reason);
 std::string warning_text(std::string_view text);
-std::string saved_text(const EditScene& scene);
+std::string saved_text(const EditScene& scene, const NodePlaces& places);
 std::string state_text(const ViewSession& session);
 
 /// A frame as it is sent. \param number  of the frame.

@@ -79,13 +79,15 @@ Resources model_resources(const ViewModel& model) {
   const Index num_modes = std::min(model.num_flexible_modes(), most_modes);
   RowMatrix modes(num_modes, model.dim());
   for (Index k = 0; k < num_modes; ++k) modes.row(k) = model.mode(k).transpose();
+  std::vector<Index> places;
+  for (const Index v : geometry.nodes) places.push_back(node_places(model.model.body).place(v));
   std::vector<Index> corners;
   for (const Triangle& triangle : geometry.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
   return {{"/model.json", {"application/json", described(model, num_modes)}},
           {"/model/positions.bin", array<float>(geometry.rest.reshaped<Eigen::RowMajor>())},
           {"/model/triangles.bin", array<std::uint32_t>(corners)},
           {"/model/basis.bin", array<float>(geometry.basis.reshaped<Eigen::RowMajor>())},
-          {"/model/nodes.bin", array<std::uint32_t>(geometry.nodes)},
+          {"/model/nodes.bin", array<std::uint32_t>(places)},
           {"/model/components.bin", array<std::uint32_t>(geometry.corners)},
           {"/model/weights.bin", array<float>(geometry.weights)},
           {"/model/modes.bin", array<float>(modes.reshaped<Eigen::RowMajor>())}};

@@ -2,6 +2,7 @@
 #include <io/builtin/builtin_meshes.hpp>
 #include <io/frames/vtu_writer.hpp>
 #include <io/mesh/mesh_reader.hpp>
+#include <io/mesh/node_sets.hpp>
 #include <physics/mesh/tet_mesh.hpp>
 #include <testing/near.hpp>
 #include <tests/io/mesh_files.hpp>
@@ -133,6 +134,103 @@ TEST(ReadTetMesh, ReadsWhatWriteVtuWrites) {
   EXPECT_TRUE(is_same(mesh.nodes, expected.nodes));
   EXPECT_EQ(mesh.cells, expected.cells);
   EXPECT_EQ(mesh.region, expected.region);
+}
+
+TEST(ReadTetMesh, SkipsAByteOrderMark) {
+  const TetMesh expected = two_regions();
+  for (MeshFile file : in_every_format(expected)) {
+    if (file.format.find("binary") != std::string::npos) continue;
+    SCOPED_TRACE(file.format);
+    file.bytes.insert(0, "\xef\xbb\xbf");
+    if (!file.ele_bytes.empty()) file.ele_bytes.insert(0, "\xef\xbb\xbf");
+    const TetMesh mesh = read_tet_mesh(write(file, test_folder()));
+    EXPECT_TRUE(is_same(mesh.nodes, expected.nodes));
+    EXPECT_EQ(mesh.cells, expected.cells);
+  }
+}
+
+/// Four nodes of one tet, and the number of its entity as a part.
+std::string partitioned(const std::string& volume, const std::string& part) {
+  return "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 9 \"skin\"\n3 20 \"steel\"\n$EndPhysicalNames\n"
+         "$Entities\n0 0 0 1\n1 0 0 0 1 1 1 " +
+         volume +
+         " 0\n$EndEntities\n$PartitionedEntities\n3\n1\n7 2\n1 0 0 2\n5 3 1 1 1 0 0 0 0\n"
+         "3 3 1 1 1 0 0 0 1 1 1 " +
+         part + " 1 -4\n4 3 1 2 1 2 0 0 0 1 1 1 " + part +
+         " 0\n$EndPartitionedEntities\n$Nodes\n1 4 1 4\n3 3 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n"
+         "$Elements\n1 1 1 1\n3 3 4 1\n1 1 2 3 4\n$EndElements\n";
+}
+
+TEST(ReadTetMesh, KnowsThePhysicalGroupsOfPartitionedGmshMeshes) {
+  for (const auto& [volume, part] : {std::pair("1 20", "1 20"), std::pair("1 20", "0")}) {  // its own, its parent's
+    const TetMesh mesh = read_tet_mesh(write(partitioned(volume, part), test_folder() / "parts.msh"));
+    EXPECT_THAT(mesh.region, ElementsAre(20));
+    EXPECT_EQ(mesh.region_names.at(20), "steel");
+  }
+}
+
+/// Two tets; the first is in the groups 20 and 30, the second in 30.
+std::string two_groups(const std::string& version) {
+  const std::string head = "$MeshFormat\n" + version +
+                           " 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 20 \"left\"\n3 30 "
+                           "\"everything\"\n$EndPhysicalNames\n";
+  if (version == "2.2")
+    return head +
+           "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 0 -1\n$EndNodes\n$Elements\n3\n"
+           "1 4 2 20 1 1 2 3 4\n2 4 2 30 1 1 2 3 4\n3 4 2 30 2 1 3 2 5\n$EndElements\n";
+  return head +
+         "$Entities\n0 0 0 2\n1 0 0 0 1 1 1 2 20 30 0\n2 0 0 0 1 1 1 1 30 0\n$EndEntities\n$Nodes\n1 5 1 5\n3 1 0 "
+         "5\n1\n2\n"
+         "3\n4\n5\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 -1\n$EndNodes\n$Elements\n2 2 1 2\n3 1 4 1\n1 1 2 3 4\n3 2 4 1\n2 1 "
+         "3 2 5\n"
+         "$EndElements\n";
+}
+
+TEST(ReadTetMesh, KeepsEveryGroupOfCellsThatAreInSeveral) {
+  for (const char* version : {"2.2", "4.1"}) {
+    SCOPED_TRACE(version);
+    const TetMesh mesh = read_tet_mesh(write(two_groups(version), test_folder() / "groups.msh"));
+    ASSERT_EQ(mesh.num_cells(), 2);
+    EXPECT_THAT(regions_of_tag(mesh, mesh.region[0]), ElementsAre(20, 30));
+    EXPECT_THAT(regions_of_tag(mesh, mesh.region[1]), ElementsAre(30));
+    EXPECT_THAT(all_regions(mesh), ElementsAre(20, 30));
+    EXPECT_EQ(nodes_of_region(mesh, "everything").size(), 5u);
+    EXPECT_EQ(nodes_of_region(mesh, "left").size(), 4u);
+    EXPECT_EQ(nodes_of_region(mesh, "20").size(), 4u);
+  }
+}
+
+TEST(ReadTetMesh, KnowsWhereNodesStandInAFileThatListsMore) {
+  const std::string text =
+      "MeshVersionFormatted 1\nDimension 3\nVertices\n7\n9 9 9 0\n0 0 0 0\n1 0 0 0\n8 8 8 0\n0 1 0 0\n"
+      "0 0 1 0\n7 7 7 0\nTetrahedra\n1\n2 3 5 6 0\n";
+  const TetMesh mesh = read_tet_mesh(write(text, test_folder() / "more.mesh"));
+  EXPECT_THAT(mesh.places.of_node, ElementsAre(1, 2, 4, 5));
+  EXPECT_EQ(mesh.places.count, 7);
+  EXPECT_EQ(mesh.places.node(4), 2);
+  EXPECT_EQ(mesh.places.node(3), -1);
+  EXPECT_THAT(read_node_set(mesh.nodes, write("4\n0\n1\n", test_folder() / "list.txt"), mesh.places),
+              ElementsAre(0, 2));
+  EXPECT_THROW(read_node_set(mesh.nodes, write("7\n", test_folder() / "list.txt"), mesh.places), InputError);
+  EXPECT_THROW(read_node_set(mesh.nodes, write("0\n3\n", test_folder() / "list.txt"), mesh.places), InputError);
+  const auto labels = write("5\n5\n1\n5\n5\n1\n5\n", test_folder() / "labels.txt");
+  EXPECT_THAT(nodes_with_label(mesh.nodes, labels, 5, mesh.places), ElementsAre(0, 2));
+  EXPECT_THROW(nodes_with_label(mesh.nodes, write("5\n5\n5\n5\n", test_folder() / "labels.txt"), 5, mesh.places),
+               InputError);
+  EXPECT_TRUE(two_regions().places.of_node.empty());
+}
+
+TEST(ReadTetMesh, TellsRegionsOfRealAttributesApart) {
+  const std::string nodes = "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 0 -1\n";
+  const auto read = [&](const std::string& a, const std::string& b) {
+    write(nodes, test_folder() / "real.node");
+    return read_tet_mesh(write("2 4 1\n1 1 2 3 4 " + a + "\n2 1 3 2 5 " + b + "\n", test_folder() / "real.ele"));
+  };
+  EXPECT_THAT(read("3", "-2.0").region, ElementsAre(3, -2));
+  const TetMesh real = read("1.5", "1");
+  EXPECT_THAT(real.region, ElementsAre(2, 1));
+  EXPECT_EQ(real.region_names, (std::map<int, std::string>{{1, "1"}, {2, "1.5"}}));
+  EXPECT_THAT(read("0.25", "nan").region, ElementsAre(1, 0));
 }
 
 TEST(ReadTetMesh, AcceptsWhatNumbersMayLookLike) {

@@ -210,6 +210,48 @@ TEST(ReadTriangleMesh, RefusesWithFilePlaceAndExpectation) {
   EXPECT_THAT(refusal("solid empty\nendsolid empty\n", "a.stl"), HasSubstr("holds no triangles"));
 }
 
+TEST(ReadTriangleMesh, GoesOnBehindABackslashOfAnObjGluedOrNot) {
+  const std::string tail = "v 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4\\\n 3\nf 2 1 \\\r\n\\\n 5\n";
+  for (const std::string head : {"v 0 0 0\nv 1 \\\n 0 0\n", "v\\\n0 0 0\nv 1 0\\\r\n 0\n"}) {
+    const TriangleMesh mesh = read(head + tail + "v 0 -1 0\n", "a.obj");
+    EXPECT_EQ(mesh.num_triangles(), 3);
+    EXPECT_EQ(mesh.num_nodes(), 5);
+    EXPECT_EQ(mesh.nodes(1, 0), 1);
+    EXPECT_EQ(mesh.triangles[2], (Triangle{1, 0, 4}));
+  }
+  // a comment does not go on: paths of another system may end so
+  EXPECT_EQ(read("# C:\\objects\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "b.obj").num_nodes(), 3);
+  EXPECT_THAT(refusal("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1\n2 3\n", "c.obj"), HasSubstr("c.obj:5: expected a keyword"));
+  EXPECT_THAT(refusal("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 \\\n 2 x\n", "d.obj"), HasSubstr("d.obj:5: expected a corner"));
+}
+
+TEST(ReadTriangleMesh, SkipsAByteOrderMark) {
+  for (const MeshFile& file : in_every_format(float_sheet())) {
+    if (file.format.find("binary") != std::string::npos) continue;
+    SCOPED_TRACE(file.format);
+    const TriangleMesh mesh = read("\xef\xbb\xbf" + file.bytes, "with_mark.dat");
+    EXPECT_TRUE(is_same(corners(mesh), corners(float_sheet())));
+  }
+}
+
+TEST(ReadTriangleMesh, ReadsBinaryStlThatBeginsWithSolidOrGoesOn) {
+  for (const MeshFile& file : in_every_format(float_sheet())) {
+    if (!is_stl(file) || file.format.find("binary") == std::string::npos) continue;
+    for (const std::string_view head : {"solid made by a program", "exported"})
+      for (const std::string& tail : {std::string(), std::string("\n"), std::string(70, 'x')}) {
+        std::string bytes = file.bytes + tail;
+        bytes.replace(0, head.size(), head);
+        MeshNotes notes;
+        const TriangleMesh mesh = read(bytes, "solid.stl", &notes);
+        EXPECT_TRUE(is_same(corners(mesh), corners(float_sheet())));
+        EXPECT_EQ(notes.warnings.size(), tail.empty() ? 1u : 2u);
+        if (!tail.empty()) {
+          EXPECT_THAT(notes.warnings, testing::Contains(HasSubstr(std::to_string(tail.size()) + " bytes follow")));
+        }
+      }
+  }
+}
+
 TEST(ReadTriangleMesh, ReadsSeveralSolidsOfAnStlAsOneMesh) {
   MeshNotes notes;
   const std::string facet = "FACET NORMAL 0 0 1 OUTER LOOP VERTEX 0 0 0 VERTEX 1 0 0 VERTEX ";
