@@ -96,6 +96,61 @@ const MaterialLaw& named_law(const std::string& name, const std::string& where) 
   }
 }
 
+/// Hands materials over to a solid. \param materials  the first is that of cells without one of their own.
+/// \param source  for messages, if they come from a file.
+template <typename Mesh>
+void take_materials(const MaterialLaw& law, const std::vector<Material>& materials, const std::string& source,
+                    SolidOf<Mesh>& solid) {
+  solid.density = Vector::Constant(1, materials[0].density);
+  if (!solid.material_of_cell.empty()) {
+    solid.density.resize(solid.mesh.num_cells());
+    for (Index e = 0; e < solid.mesh.num_cells(); ++e) solid.density[e] = materials[solid.material_of_cell[e]].density;
+  }
+  for (std::size_t k = 0; k < materials.size(); ++k) {
+    std::vector<double> row;
+    try {
+      row = law.values(materials[k].moduli, materials[k].parameters);
+    } catch (const std::invalid_argument& error) {
+      throw InputError((source.empty() ? "" : source + ": ") + error.what());
+    }
+    solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
+    for (std::size_t j = 0; j < row.size(); ++j) solid.parameters(k, j) = row[j];
+  }
+}
+
+bool names_a_material(const ProblemOptions& problem) {
+  const ProblemOptions plain;
+  return problem.materials || !problem.parameters.empty() || problem.young != plain.young ||
+         problem.poisson != plain.poisson || problem.density != plain.density;
+}
+
+/// The materials that the mesh's own file gives to its regions.
+template <typename Mesh>
+void set_materials_of_file(const ProblemOptions& problem, const std::map<int, FileMaterial>& of_region,
+                           SolidOf<Mesh>& solid) {
+  solid.law = problem.law;
+  for (const auto& [tag, material] : of_region) {
+    if (material.law.empty()) continue;
+    if (problem.law != ProblemOptions().law && problem.law != material.law)
+      throw InputError("--material " + problem.law + ": material " + material.name + " of " + problem.mesh + " is of " +
+                       material.law);
+    solid.law = material.law;
+  }
+  std::vector<Material> materials{base_material(problem)};
+  std::map<int, std::int32_t> index;
+  for (const auto& [tag, material] : of_region) {
+    index[tag] = static_cast<std::int32_t>(materials.size());
+    Material own{materials[0].moduli, material.density, material.parameters};
+    if (material.law.empty()) own.moduli = {material.young, material.poisson};
+    materials.push_back(own);
+  }
+  for (const int tag : solid.mesh.region) {
+    const auto found = index.find(tag);
+    solid.material_of_cell.push_back(found == index.end() ? 0 : found->second);
+  }
+  take_materials(named_law(solid.law, "--material"), materials, problem.mesh, solid);
+}
+
 /// A law and one material for the object, and others for the regions that the file of --materials names.
 template <typename Mesh>
 void set_materials(const ProblemOptions& problem, SolidOf<Mesh>& solid) {
@@ -140,23 +195,7 @@ void set_materials(const ProblemOptions& problem, SolidOf<Mesh>& solid) {
     }
     file->finish();
   }
-  solid.density = Vector::Constant(1, materials[0].density);
-  if (!solid.material_of_cell.empty()) {
-    solid.density.resize(mesh.num_cells());
-    for (Index e = 0; e < mesh.num_cells(); ++e) solid.density[e] = materials[solid.material_of_cell[e]].density;
-  }
-  const auto values = [&](const Material& material) {
-    try {
-      return law.values(material.moduli, material.parameters);
-    } catch (const std::invalid_argument& error) {
-      throw InputError((problem.materials ? problem.materials->string() + ": " : "") + error.what());
-    }
-  };
-  for (std::size_t k = 0; k < materials.size(); ++k) {
-    const std::vector<double> row = values(materials[k]);
-    solid.parameters.conservativeResize(static_cast<Index>(materials.size()), static_cast<Index>(row.size()));
-    for (std::size_t j = 0; j < row.size(); ++j) solid.parameters(k, j) = row[j];
-  }
+  take_materials(law, materials, problem.materials ? problem.materials->string() : "", solid);
 }
 
 double shell_thickness(const ProblemOptions& problem, const TriangleMesh& mesh) {
@@ -181,7 +220,13 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
             "--components gauss-points is for hexahedra and quadratic tets; a linear tet has one Gauss point");
       solid.component = SolidComponent::GaussPoint;
     }
-    set_materials(problem, solid);
+    const std::map<int, FileMaterial>& of_file = named.notes.materials;
+    if (!of_file.empty() && !names_a_material(problem)) {
+      set_materials_of_file(problem, of_file, solid);
+    } else {
+      if (!of_file.empty()) warn("the materials of " + problem.mesh + " are not used: options name others");
+      set_materials(problem, solid);
+    }
     return solid;
   };
   const auto shell_body = [&](const TriangleMesh& surface) -> Body {

@@ -1,6 +1,7 @@
 #pragma once
 /// \file Readers of the mesh formats behind read_solid_mesh, one a format: each turns a text into a FileMesh.
 
+#include <io/mesh/mesh_notes.hpp>
 #include <io/text/cursor.hpp>
 #include <physics/mesh/cell_mesh.hpp>
 
@@ -22,6 +23,7 @@ struct FileMesh {
   std::vector<double>
       attribute;  ///< one a cell, or empty: what tells the regions where a format has real numbers for it
   MeshNumbers numbers;
+  std::map<int, FileMaterial> materials;
   std::vector<std::string> warnings;
 
   Index num_higher = 0;                      ///< tets of order three or more, of which only the corners were taken
@@ -42,7 +44,10 @@ void order_mid_edges(FileMesh& mesh, const Cursor& in);
 void read_gmsh(Cursor& in, FileMesh& mesh);
 void read_medit(Cursor& in, FileMesh& mesh);
 void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh);
+/// \param text  with what it includes, see vega_with_includes().
 void read_vega(Cursor& in, FileMesh& mesh);
+/// The text of a file, and those that its lines *INCLUDE name, in their place, relative to the file.
+std::string vega_with_includes(const std::filesystem::path& path, std::string_view text);
 void read_legacy_vtk(Cursor& in, FileMesh& mesh);
 void read_vtu(const Cursor& in, FileMesh& mesh);
 

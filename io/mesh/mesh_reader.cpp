@@ -68,7 +68,9 @@ FileMesh read_any(const std::filesystem::path& path) {
     Cursor in(name, bytes, comments);
     read_medit(in, mesh);
   } else if (word.starts_with('*')) {
-    Cursor in(name, bytes, {.separator = ',', .comment = '#'});
+    const std::string all = vega_with_includes(path, bytes);
+    Cursor in(all.size() == bytes.size() ? name : name + " with what it includes", all,
+              {.separator = ',', .comment = '#'});
     read_vega(in, mesh);
   } else if (has_extension(path, ".node") || has_extension(path, ".ele")) {
     return read_tetgen_pair(path);
@@ -184,7 +186,7 @@ Mesh finish(FileMesh& file, std::vector<std::array<Index, size>> cells, const st
   }
   if (notes) {
     warn_of_surprises(mesh, file.numbers, file.warnings);
-    *notes = {std::move(file.format), std::move(file.warnings), std::move(file.numbers)};
+    *notes = {std::move(file.format), std::move(file.warnings), std::move(file.numbers), std::move(file.materials)};
   }
   return mesh;
 }

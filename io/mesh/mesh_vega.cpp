@@ -1,9 +1,91 @@
 #include <io/mesh/mesh_formats.hpp>
 
+#include <filesystem>
 #include <numeric>
-#include <set>
 
 namespace supple {
+
+namespace {
+
+std::string trimmed(std::string_view line) {
+  line = line.substr(0, line.find('#'));
+  while (!line.empty() && static_cast<unsigned char>(line.front()) <= ' ') line.remove_prefix(1);
+  while (!line.empty() && static_cast<unsigned char>(line.back()) <= ' ') line.remove_suffix(1);
+  return std::string(line);
+}
+
+/// The rest of the line, or the next one that holds anything.
+std::string next_line(Cursor& in) {
+  while (true) {
+    std::string line = trimmed(in.rest_of_line());
+    if (!line.empty() || in.num_left() == 0) return line;
+  }
+}
+
+void expand(const std::filesystem::path& path, std::string_view text, int depth, int& num_included, std::string& all) {
+  constexpr int deepest = 16, most = 1000;
+  constexpr std::string_view include = "*INCLUDE";
+  if (depth > deepest || num_included > most)
+    throw InputError(path.string() + ": files include each other, " + std::to_string(num_included) + " so far");
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
+    const std::string line = trimmed(text.substr(0, end));
+    if (line.starts_with(include)) {
+      const std::string name = trimmed(std::string_view(line).substr(include.size()));
+      if (name.empty()) throw InputError(path.string() + ": *INCLUDE names no file");
+      const std::filesystem::path file = path.parent_path() / name;
+      try {
+        std::error_code unknown;
+        if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown))
+          throw InputError(file.string() + ": is no regular file");
+        expand(file, read_text(file), depth + 1, ++num_included, all);
+      } catch (const InputError& error) {
+        throw InputError(depth > 0 ? error.what() : path.string() + ": *INCLUDE: " + error.what());
+      }
+      all += '\n';
+    } else {
+      all += text.substr(0, end);
+    }
+    text.remove_prefix(end);
+  }
+}
+
+/// "ENU, density, E, nu" or "MOONEYRIVLIN, density, mu01, mu10, v1".
+FileMaterial read_material(Cursor& in) {
+  FileMaterial material;
+  material.name = next_line(in);
+  const std::string kind(in.word());
+  if (kind != "ENU" && kind != "MOONEYRIVLIN") {
+    material.law = kind;
+    in.rest_of_line();
+    return material;
+  }
+  material.density = in.real("a density");
+  if (kind == "ENU") {
+    material.young = in.real("Young's modulus");
+    material.poisson = in.real("Poisson's ratio");
+  } else {
+    material.law = "mooney-rivlin";
+    material.parameters["c01"] = in.real("mu01");
+    material.parameters["c10"] = in.real("mu10");
+    material.parameters["bulk"] = 2 * in.real("v1");  // v1 (J - 1)² there
+  }
+  return material;
+}
+
+bool is_read(const FileMaterial& material) {
+  return material.law.empty() || material.law == "mooney-rivlin";
+}
+
+}  // namespace
+
+std::string vega_with_includes(const std::filesystem::path& path, std::string_view text) {
+  std::string all;
+  all.reserve(text.size());
+  int num_included = 0;
+  expand(path, text, 0, num_included, all);
+  return all;
+}
 
 /// \see Sin, Schroeder and Barbič 2013, "Vega: Non-Linear FEM Deformable Object Simulator", and the .veg
 /// manual.
@@ -12,13 +94,13 @@ void read_vega(Cursor& in, FileMesh& mesh) {
   Index num_nodes = -1;
   std::int64_t first_node = 1, first_cell = 1;
   std::map<std::string, std::vector<std::int64_t>> sets;
-  std::set<std::string> materials;
+  std::map<std::string, FileMaterial> materials;
   struct Region {
-    std::string set;
+    std::string set, material;
     std::size_t position;
   };
   std::vector<Region> regions;
-  bool skip_rows = false;  // parameters of a material, or elements of another kind
+  bool skip_rows = false;  // elements of another kind
 
   for (std::string_view keyword = in.word(); !keyword.empty(); keyword = in.word()) {
     if (keyword == "*VERTICES") {
@@ -62,18 +144,18 @@ void read_vega(Cursor& in, FileMesh& mesh) {
           mesh.add_tet(std::span(nodes).first(4));
       }
     } else if (keyword == "*MATERIAL") {
-      materials.emplace(in.word());
-      skip_rows = true;
+      FileMaterial material = read_material(in);
+      materials[material.name] = std::move(material);
     } else if (keyword == "*REGION") {
-      std::string set(in.word());
-      regions.push_back({std::move(set), in.position()});
-      in.rest_of_line();
+      const std::size_t position = in.position();
+      const std::string line = next_line(in);
+      const std::size_t comma = line.find(',');
+      regions.push_back({trimmed(line.substr(0, comma)),
+                         comma == std::string::npos ? "" : trimmed(line.substr(comma + 1)), position});
     } else if (keyword == "*SET") {
-      auto& members = sets[std::string(in.word())];
+      auto& members = sets[next_line(in)];
       for (std::string_view next = in.peek(); !next.empty() && next[0] != '*'; next = in.peek())
         members.push_back(in.integer("an element number"));
-    } else if (keyword == "*INCLUDE") {
-      in.fail("expected a mesh in one file, *INCLUDE is not followed");
     } else if (skip_rows && !keyword.starts_with('*')) {
       in.rest_of_line();
     } else {
@@ -101,9 +183,18 @@ void read_vega(Cursor& in, FileMesh& mesh) {
       in.set_position(regions[r].position);
       in.fail("the region names the set " + regions[r].set + ", which does not exist");
     }
+    if (regions[r].material.empty()) continue;
+    const auto material = materials.find(regions[r].material);
+    if (material == materials.end()) {
+      in.set_position(regions[r].position);
+      in.fail("the region names the material " + regions[r].material + ", which does not exist");
+    }
+    if (is_read(material->second)) mesh.materials[tag] = material->second;
   }
-  for (const std::string& material : materials)
-    mesh.warnings.push_back("the parameters of material " + material + " are not read");
+  for (const auto& [name, material] : materials)
+    if (!is_read(material))
+      mesh.warnings.push_back("material " + name + " is of the kind " + material.law +
+                              ", expected ENU or MOONEYRIVLIN: not read");
 }
 
 }  // namespace supple

@@ -54,10 +54,11 @@ TEST_P(EveryFormat, KeepsEveryBitAndTheRegions) {
   }
   EXPECT_EQ(notes.numbers.node.size(), 27u);
   EXPECT_EQ(notes.numbers.cell.size(), 48u);
-  if (GetParam().format == "vega")
-    EXPECT_THAT(notes.warnings, ElementsAre(HasSubstr("material rubber")));
-  else
-    EXPECT_THAT(notes.warnings, IsEmpty());
+  EXPECT_THAT(notes.warnings, IsEmpty());
+  if (GetParam().format == "vega") {
+    EXPECT_EQ(notes.materials.at(1).young, 1e6);
+    EXPECT_EQ(notes.materials.at(2).name, "rubber");
+  }
 }
 
 TEST_P(EveryFormat, IsKnownByItsContentWhateverItsName) {
@@ -218,6 +219,42 @@ TEST(ReadTetMesh, KnowsWhereNodesStandInAFileThatListsMore) {
   EXPECT_THROW(nodes_with_label(mesh.nodes, write("5\n5\n5\n5\n", test_folder() / "labels.txt"), 5, mesh.places),
                InputError);
   EXPECT_TRUE(two_regions().places.of_node.empty());
+}
+
+TEST(ReadTetMesh, FollowsWhatAVegaFileIncludesAndItsMaterials) {
+  const std::filesystem::path folder = test_folder() / "vega";
+  std::filesystem::create_directories(folder / "sets");
+  write("*VERTICES\n5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 0 -1\n", folder / "nodes.txt");
+  write("1,\n*INCLUDE deeper.txt # of the same folder\n", folder / "sets/one.txt");
+  write("2\n", folder / "sets/deeper.txt");
+  const std::string head =
+      "*INCLUDE nodes.txt\n*ELEMENTS\nTET\n2 4 0\n1 1 2 3 4\n2 1 3 2 5\n"
+      "*MATERIAL hard stuff\nENU, 1800, 2e7, 0.45\n*MATERIAL gum\nMOONEYRIVLIN, 900, 10, 20, 300\n"
+      "*MATERIAL odd\nOGDEN, 1, 2, 3\n*SET both of them\n*INCLUDE sets/one.txt\n*SET last\n2\n";
+  MeshNotes notes;
+  const TetMesh mesh =
+      read_tet_mesh(write(head + "*REGION\nboth of them, hard stuff\n*REGION\nlast, gum\n", folder / "a.veg"), &notes);
+  EXPECT_THAT(mesh.region, ElementsAre(1, 2));  // later regions win
+  EXPECT_EQ(mesh.region_names.at(1), "both of them");
+  EXPECT_EQ(notes.materials.at(1).young, 2e7);
+  EXPECT_EQ(notes.materials.at(1).poisson, 0.45);
+  EXPECT_EQ(notes.materials.at(2).law, "mooney-rivlin");
+  EXPECT_EQ(notes.materials.at(2).density, 900);
+  EXPECT_EQ(notes.materials.at(2).parameters, (std::map<std::string, double>{{"c01", 10}, {"c10", 20}, {"bulk", 600}}));
+  EXPECT_THAT(notes.warnings, ElementsAre(HasSubstr("material odd is of the kind OGDEN")));
+
+  const auto refusal_of = [&](const std::string& text) {
+    try {
+      read_tet_mesh(write(text, folder / "b.veg"));
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_THAT(refusal_of(head + "*REGION\nlast, rubber\n"), HasSubstr("the material rubber, which does not exist"));
+  EXPECT_THAT(refusal_of(head + "*REGION\nlist, gum\n"), HasSubstr("the set list, which does not exist"));
+  EXPECT_THAT(refusal_of("*INCLUDE none.txt\n"), HasSubstr("none.txt"));
+  EXPECT_THAT(refusal_of("*INCLUDE b.veg\n"), HasSubstr("include each other"));
 }
 
 TEST(ReadTetMesh, TellsRegionsOfRealAttributesApart) {
