@@ -40,6 +40,7 @@ struct SolveRecord {
 struct EditProblem {
   const Points& rest;  ///< positions [m]
   std::vector<Handle> handles;
+  const Loads& loads;                          ///< beside the handles
   std::vector<std::vector<RigidMotion>> path;  ///< of all handles in every solve
   double softest_eigenvalue, mass, diagonal;   ///< of the object [1/s², kg, m]
 };
@@ -55,9 +56,10 @@ struct EditRun {
 template <typename MatrixType, typename Frame, typename Nodal, typename Lead>
 EditRun run_edits(const AnySystem<MatrixType>& system, const EditProblem& problem, const StaticOptions& options,
                   const Frame& frame, const Nodal& nodal, const Lead& lead, const Progress& progress) {
-  const auto& [rest, handles, path, softest_eigenvalue, mass, diagonal] = problem;
+  const auto& [rest, handles, loads, path, softest_eigenvalue, mass, diagonal] = problem;
   Editor editor(system, rest, options);
   for (const Handle& handle : handles) (void)editor.add(handle);
+  editor.set_loads(loads);
   EditRun run;
   const Vector start = frame(editor.state());
   run.states.resize(static_cast<Index>(path.size()) + 1, start.size());
@@ -125,8 +127,8 @@ void EditCommand::run() const {
   const Vector masses = nodal_mass(reduced.body);
   const double softest = modes.softest_stiffness(), mass = masses.sum();
   const std::vector<Handle> handles = make_handles(edits, softest, mass);
-  const EditProblem problem{rest,    handles, handle_paths(edits, handles, rest),
-                            softest, mass,    bounding_box(rest).diagonal()};
+  const EditProblem problem{
+      rest, handles, edits.loads, handle_paths(edits, handles, rest), softest, mass, bounding_box(rest).diagonal()};
   const OutputFolder folder(output);
   times.finish("read model");
 

@@ -238,7 +238,13 @@ void FidelityCommand::run() const {
   const Body body = load_body(*this, named);
   if (const auto note = locking_note(*this, body)) warn(*note);
   std::vector<EditScene> edits;
-  for (const std::filesystem::path& scene : scenes) edits.push_back(read_edit_scene(scene, body));
+  for (const std::filesystem::path& scene : scenes) {
+    edits.push_back(read_edit_scene(scene, body));
+    const Loads& loads = edits.back().loads;
+    if (!loads.gravity.isZero(0) || !loads.forces.empty() || !loads.springs.empty() || !loads.others.empty())
+      throw InputError(scene.string() +
+                       ": has loads beside its handles, which are not compared here; supple edit takes them");
+  }
   ProblemOptions problem = *this;
   // snapshots are read if some subspace is made of them
   problem.subspace = std::ranges::any_of(subspaces, names_pca) ? "pca" : "extended";

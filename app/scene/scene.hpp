@@ -66,9 +66,6 @@ struct Scene {
 /// \throws InputError naming file, place and what was expected there; unknown keys are refused.
 Scene read_scene(const std::filesystem::path& path, const Body& body);
 
-/// The node closest to a point.
-Index nearest_node(const Points& nodes, const Point& point);
-
 /// A scene for any model: pulled for half a period T of its softest flexible mode, then released, for three
 /// periods in steps of T/60. Held objects are pulled sideways as by gravity, along the axis that gives way
 /// most; free ones are bent by forces in balance, along their softest mode. By linear theory the motion

@@ -2,6 +2,7 @@
 /// \file Scripted edits as data: handles on an object and their motions.
 
 #include <numerics/optimize/warm_solver.hpp>
+#include <physics/load/loads.hpp>
 #include <reduction/editing/handles.hpp>
 
 #include <optional>
@@ -29,6 +30,7 @@ struct EditScene {
   std::string description;
   std::vector<HandleRegion> handles;
   std::vector<Edit> edits;
+  Loads loads = {};  ///< what acts beside the handles, in every solve
   std::optional<NonlinearSolver> solver;
   std::optional<double> tolerance;
   std::optional<Index> max_iterations;

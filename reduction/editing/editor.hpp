@@ -1,12 +1,13 @@
 #pragma once
 /// \file Editor by deformation: the shape of least energy under handles (Eq. 3 and Sec. 6).
 
+#include <physics/load/loads.hpp>
 #include <physics/statics/static_solver.hpp>
 #include <reduction/editing/handles.hpp>
 
 namespace supple {
 
-/// Handles on an object and its equilibrium under them. Handles come, go and move at any time; each solve starts from
+/// Handles on an object and its equilibrium under them and what else acts. Handles come, go and move at any time; each solve starts from
 /// the last state. Works on the reduced system (milliseconds) and on the full one (the reference) alike:
 ///
 ///     Editor editor(system, positions, {.solver = LineSearchBfgs{}});
@@ -41,19 +42,29 @@ class Editor {
     handles_[handle].motion = motion;
   }
   const std::vector<Handle>& handles() const { return handles_; }
+  /// What acts beside the handles, such as gravity; nothing at first. \throws std::invalid_argument as check_loads().
+  void set_loads(Loads loads) {
+    check_loads(loads, rest_positions_.rows());
+    loads_ = std::move(loads);
+    changed_ = true;
+  }
 
   /// To the equilibrium under the handles, from the last state. \return see StaticSolver; a state that is not finite
   /// is not kept.
   SolveReport solve() {
-    const Loads springs = handle_loads(handles_, rest_positions_);
+    const std::vector<PointSpring> springs = handle_loads(handles_, rest_positions_).springs;
+    const auto first = static_cast<Index>(loads_.springs.size());
     if (changed_) {  // the stiffness depends on the samples only
-      load_ = system_.project(springs);
+      Loads all = loads_;
+      all.springs.insert(all.springs.end(), springs.begin(), springs.end());
+      load_ = system_.project(all);
+      dead_force_ = load_.dead_force();
       changed_ = false;
     } else if (!load_.springs.empty()) {
       Vector& targets = load_.springs.targets;
-      for (Index k = 0; k < static_cast<Index>(springs.springs.size()); ++k)
-        targets.segment<3>(3 * k) = springs.springs[k].displacement;
-      load_.force = load_.springs.pull_of_targets();
+      for (std::size_t k = 0; k < springs.size(); ++k)
+        targets.segment<3>(3 * (first + static_cast<Index>(k))) = springs[k].displacement;
+      load_.force = dead_force_ + load_.springs.pull_of_targets();
     }
     Vector u = state_;
     const SolveReport report = solver_.solve(load_, u);
@@ -90,7 +101,9 @@ class Editor {
   Points rest_positions_;
   StaticSolver<System> solver_;
   std::vector<Handle> handles_;
+  Loads loads_;  // beside those of the handles
   SystemLoad<typename System::MatrixType> load_;
+  Vector dead_force_;
   Vector state_;
   bool changed_ = true;
 };

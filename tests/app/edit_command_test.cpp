@@ -72,6 +72,28 @@ TEST_F(EditCommandTest, BendsABarAndKeepsWhatItReports) {
   EXPECT_LT(this->report({"compare", "bent", "full"})["position_error"]["relative"], 0.1);
 }
 
+TEST_F(EditCommandTest, TakesTheLoadsThatSimulationsTake) {
+  reduce({"--modes", "8", "--fix", "x<=0", "--young", "2e4"});
+  const auto energy = [&](const std::string& loads) -> double {
+    write("scene.json", R"({"handles": [{"name": "tip", "nodes": "x>90%", "weight": 1}], )" + loads +
+                            R"("edits": [{"moves": [{"handle": "tip", "translation": [0, 0, 0]}]}]})");
+    return edit({"bar.supple", "--scene", "scene.json", "-o", "run"})["elastic_energy"];
+  };
+  EXPECT_LT(energy(""), 1e-12);  // at rest
+  const double by_gravity = energy(R"("gravity": [0, 0, "-981 cm/s^2"], )");
+  EXPECT_GT(by_gravity, 1e-3);
+  (void)edit({"bar.supple", "--scene", "scene.json", "--full", "-o", "full"});
+  EXPECT_LT(report({"compare", "run", "full"})["position_error"]["relative"], 0.2);
+  // its weight, 62.5 kg, shared out by mass
+  EXPECT_NEAR(energy(R"("forces": [{"nodes": "x>=0", "force": [0, 0, -613.125]}], )"), by_gravity, 1e-4 * by_gravity);
+  // held against it
+  EXPECT_LT(energy(R"("gravity": [0, 0, -9.81], "springs": [{"nodes": "x>90%", "stiffness": 1e5}], )"),
+            0.5 * by_gravity);
+  write("scene.json",
+        R"({"handles": [{"name": "tip", "nodes": "x>90%"}], "gravity": [0, 1], "edits": [{"moves": []}]})");
+  expect_refusal({"edit", "bar.supple", "--scene", "scene.json"}, {"/gravity"});
+}
+
 TEST_F(EditCommandTest, SaysWhenTheSubspaceDoesNotFollowTheHandles) {
   ASSERT_EQ(supple({"reduce", "bar:16x3x3", "-o", "bar.supple", "--fix", "x<=0", "--full-loads", "0"}).exit_code, 0);
   const double diagonal = std::sqrt(1 + 2 * 9.0 / 256);

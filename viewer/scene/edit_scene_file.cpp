@@ -3,6 +3,7 @@
 #include <io/mesh/node_sets.hpp>
 #include <numerics/optimize/solver_names.hpp>
 #include <viewer/scene/edit_scene_file.hpp>
+#include <viewer/scene/scene_loads.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -93,6 +94,28 @@ RigidMotion read_motion(const JsonFields& fields, const HandleRegion& handle, co
   return RigidMotion::turn(axis, read_angle(fields, reading), fields.point_or("centre", mean), translation);
 }
 
+Loads read_loads(const JsonFields& file, const Body& body, const Reading& reading) {
+  Loads loads{.gravity = file.point_or("gravity", Point::Zero(), "m/s^2")};
+  const auto nodes_of = [&](const JsonFields& fields, const char* what) {
+    NodeShares nodes = read_nodes(fields, body);
+    const auto note = held_nodes_note(fields, nodes, body, what);
+    if (note && reading.warnings) reading.warnings->push_back(*note);
+    return nodes;
+  };
+  for (const JsonFields& fields : file.objects_if("forces")) {
+    const Point force = fields.point("force", "N");
+    for (const auto& [node, share] : nodes_of(fields, "force")) loads.forces.push_back({node, share * force});
+  }
+  for (const JsonFields& fields : file.objects_if("springs")) {
+    const double stiffness = fields.number("stiffness", positive, "N/m");
+    const Point displacement = fields.point_or("displacement", Point::Zero());
+    for (const auto& [node, share] : nodes_of(fields, "spring"))
+      loads.springs.push_back({node, share * stiffness, displacement});
+  }
+  for (const JsonFields& fields : file.objects_if("outside")) loads.others.push_back(read_outside_force(fields, body));
+  return loads;
+}
+
 EditScene read_scene(const JsonFields& file, const Body& body, const Reading& reading) {
   const Points& nodes = node_positions(body);
   EditScene scene;
@@ -121,6 +144,7 @@ EditScene read_scene(const JsonFields& file, const Body& body, const Reading& re
     scene.edits.push_back(std::move(edit));
   }
   if (scene.edits.empty()) file.fail("edits", "is empty, expected at least one edit");
+  scene.loads = read_loads(file, body, reading);
   if (const auto solver = file.object_if("solver")) {
     if (solver->contains("method"))
       scene.solver = solver_named(static_solvers, solver->choice("method", solver_names(static_solvers)));
@@ -166,6 +190,13 @@ nlohmann::ordered_json edit_scene_json(const EditScene& scene, const NodePlaces&
     }
     json["edits"].push_back({{"increments", edit.increments}, {"moves", std::move(moves)}});
   }
+  if (const Point& g = scene.loads.gravity; !g.isZero(0)) json["gravity"] = {g[0], g[1], g[2]};
+  for (const NodalForce& load : scene.loads.forces)
+    json["forces"].push_back(
+        {{"node", places.place(load.node)}, {"force", {load.force[0], load.force[1], load.force[2]}}});
+  for (const auto& [node, stiffness, u] : scene.loads.springs)
+    json["springs"].push_back(
+        {{"node", places.place(node)}, {"stiffness", stiffness}, {"displacement", {u[0], u[1], u[2]}}});
   Json solver = Json::object();
   if (scene.solver) solver["method"] = name_of_solver(static_solvers, *scene.solver);
   if (scene.tolerance) solver["tolerance"] = *scene.tolerance;

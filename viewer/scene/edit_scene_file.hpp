@@ -21,7 +21,7 @@ EditScene read_edit_scene(const std::filesystem::path& path, const Body& body,
 /// Whoever reads the document calls finish(). \throws InputError as above.
 EditScene read_edit_scene(const JsonFields& scene, const Body& body);
 
-/// What read_edit_scene() makes the same scene of; handles list their nodes.
+/// What read_edit_scene() makes the same scene of, but for outside forces; handles list their nodes.
 nlohmann::ordered_json edit_scene_json(const EditScene& scene, const NodePlaces& places);
 
 }  // namespace supple

@@ -147,12 +147,14 @@ void EditSession::reset() {
 EditScene EditSession::regions() const {
   EditScene scene;
   scene.seed = now_.seed;
+  scene.loads = now_.loads;
   for (const EditHandle& some : now_.handles) scene.handles.push_back(*some.region);
   return scene;
 }
 
 void EditSession::regrasp() {
   editor_.remove_all();
+  editor_.set_loads(now_.loads);
   const std::vector<Handle> grasps = make_handles(regions(), model_->softest_eigenvalue(), model_->mass);
   for (std::size_t k = 0; k < grasps.size(); ++k) {
     (void)editor_.add(grasps[k]);
@@ -181,6 +183,7 @@ EditScene EditSession::scene() const {
 void EditSession::load(const EditScene& scene) {
   require(scene.edits.size() <= most_edits, "the scene has " + std::to_string(scene.edits.size()) +
                                                 " edits, expected at most " + std::to_string(most_edits));
+  require(scene.loads.others.empty(), "the scene has outside forces, which no edit here takes");
   const Moment before = now_;
   const Index next_id = next_id_;
   std::vector<EditHandle> made;
@@ -197,6 +200,7 @@ void EditSession::load(const EditScene& scene) {
   now_.handles = std::move(made);
   now_.reached.assign(now_.handles.size(), RigidMotion());
   now_.seed = scene.seed;
+  now_.loads = scene.loads;
   editor_.reset();
   regrasp();
   std::vector<RigidMotion> last = now_.reached;

@@ -79,6 +79,7 @@ class EditSession {
     std::vector<EditHandle> handles;
     std::vector<RigidMotion> reached;  ///< by the handles so far
     std::uint64_t seed = 1;            ///< of their samples
+    Loads loads;                       ///< of a loaded scene
     Vector q;
     bool settled = true;
   };

@@ -106,6 +106,33 @@ TEST(Editor, TakesARigidMotionOfAllHandlesWithoutEnergy) {
   EXPECT_LT(editor.elastic_energy(), 1e-9);
 }
 
+/// What a static solver finds under all of it, whatever the editor has solved before.
+TEST(Editor, TakesLoadsBesideItsHandles) {
+  const HeldBar bar;
+  const StaticOptions options{.tolerance = 1e-10};
+  const Index tip = bar.right.samples.front();
+  const Loads loads{.gravity = {0, 0, -3}, .forces = {{tip, {0, 0.4, 0}}}, .springs = {{tip, 20, {0, 0, 0.1}}}};
+  auto editor = bar.editor(bar.system, options);
+  editor.set_loads(loads);
+  for (const double angle : {0.0, 0.3, 0.5}) {  // the second and the third move targets only
+    editor.move(1, HeldBar::bend(angle));
+    ASSERT_EQ(editor.solve().status, Status::Converged);
+    Loads all = loads;
+    const Loads handles = handle_loads(editor.handles(), bar.mesh.nodes);
+    all.springs.insert(all.springs.end(), handles.springs.begin(), handles.springs.end());
+    Vector u = editor.state();
+    u *= 0.9;
+    ASSERT_EQ(StaticSolver(bar.system, options).solve(bar.system.project(all), u).status, Status::Converged);
+    EXPECT_TRUE(is_near(editor.state(), u, 1e-7));
+    EXPECT_LT(editor.imbalance().norm(), 1e-6 * bar.system.project(all).dead_force().norm());
+  }
+  const Vector loaded = editor.state();
+  editor.set_loads({});
+  ASSERT_EQ(editor.solve().status, Status::Converged);
+  EXPECT_GT((editor.state() - loaded).norm(), 1e-3 * loaded.norm());
+  EXPECT_THROW(editor.set_loads({.forces = {{bar.mesh.num_nodes(), {0, 0, 1}}}}), std::invalid_argument);
+}
+
 TEST(Editor, TellsWhatItsHandlesHold) {
   const HeldBar bar;
   auto editor = bar.editor(bar.system);
