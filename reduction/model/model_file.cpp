@@ -7,6 +7,9 @@
 #include <array>
 #include <charconv>
 #include <concepts>
+#include <functional>
+#include <span>
+#include <sstream>
 
 namespace supple {
 
@@ -181,7 +184,7 @@ NodePlaces read_places(const ModelReader& in, Index num_nodes) {
   NodePlaces places;
   if (!in.file.contains(name)) return places;
   places.count = in.whole_number(count, in.file.metadata(count));
-  const std::vector<std::int64_t> list = in.file.integers(name);
+  const std::span<const std::int64_t> list = in.file.integers(name);
   places.of_node.assign(list.begin(), list.end());
   if (static_cast<Index>(list.size()) != num_nodes || !std::ranges::is_sorted(list, std::less_equal()) ||
       (!list.empty() && (list.front() < 0 || list.back() >= places.count)))
