@@ -18,6 +18,7 @@ const SETTLED = 96;                       // lamps after the last change that ma
 const SETTLED_IN_SOFTWARE = 32;           // less complete, but soon
 const AZIMUTH = 30, ELEVATION = 18;       // degrees, as in Supple's own pictures
 const FIELD_OF_VIEW = 24;
+const SMOOTH = 2;                         // points along a pixel's side that smooth edges, without a graphics card
 
 /** The studio: an object on a ground, light, a camera. It draws when something has changed, and only then. */
 export class Stage {
@@ -27,7 +28,8 @@ export class Stage {
     this.software = drawsInSoftware();
     this.renderer = new WebGLRenderer({antialias: !this.software, powerPreference: 'high-performance'});
     this.pixelRatio = Math.min(2, window.devicePixelRatio);
-    this.quality = new Quality((scale) => this.renderer.setPixelRatio(this.pixelRatio * scale));
+    this.quality = new Quality((scale) => this.renderer.setPixelRatio(this.pixelRatio * scale),
+      this.software ? SMOOTH / this.pixelRatio : 1);
     this.renderer.setPixelRatio(this.pixelRatio);
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
@@ -103,7 +105,7 @@ export class Stage {
 
   /** Whether the last picture is as good as it gets. */
   get settled() {
-    return this.unsettled <= 0 && this.quality.shown === 1 && !this.request;
+    return this.unsettled <= 0 && this.quality.fine && !this.request;
   }
 
   invalidate() {
@@ -249,7 +251,9 @@ export class Stage {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.setViewOffset(width, height, this.inset / 2, 0, width, height);
-    if (this.body) this.drawNow();  // or the canvas would be blank until the next picture
+    if (!this.body) return;
+    this.#draw(performance.now());  // or the canvas would be blank until the next picture
+    this.invalidate();
   }
 
   #clear() {
