@@ -15,7 +15,7 @@ import {PullTool} from './tools/pull_tool.js';
 import {BoxTool, BrushTool} from './tools/select_tools.js';
 
 const DEFAULTS = {
-  tool: 'pull', colours: 'plain', stretchRange: 0.25, wireframe: false, components: false, regions: true,
+  tool: 'pull', colours: 'plain', strainRange: 0.25, wireframe: false, components: false, regions: true,
   pullStiffness: 1, brush: 0.05, gizmo: 'translate', amplitude: 0.1, stream: 'coordinates', theme: 'auto',
   panels: window.innerWidth > 860,
 };
@@ -257,13 +257,13 @@ export class App {
   }
 
   #applyColours() {
-    const {colours, stretchRange} = this.options, {body} = this.stage;
-    const range = colours === 'displacement' ? this.displacementRange : stretchRange;
+    const {colours, strainRange} = this.options, {body} = this.stage;
+    const range = colours === 'displacement' ? this.displacementRange : strainRange;
     body.show(colours, range);
     this.layout.legend.show('colours', {
       plain: null,
       displacement: {title: 'displacement', map: 'sequential', labels: ['0', quantity(range / 2, 'm'), quantity(range, 'm')]},
-      stretch: {title: 'stretch of the surface', map: 'diverging', labels: [`−${100 * range} %`, '0', `+${100 * range} %`]},
+      strain: {title: 'strain of the surface', map: 'diverging', labels: [`−${100 * range} %`, '0', `+${100 * range} %`]},
     }[colours]);
   }
 
@@ -326,11 +326,11 @@ export class App {
 
   /** What a standalone page has to know to show what this one shows. */
   view() {
-    const {colours, stretchRange, wireframe, components, theme} = this.options;
+    const {colours, strainRange, wireframe, components, theme} = this.options;
     const {camera, controls} = this.stage;
     return {
       position: camera.position.toArray(), target: controls.target.toArray(),
-      options: {colours, stretchRange, wireframe, components, theme},
+      options: {colours, strainRange, wireframe, components, theme},
     };
   }
 }

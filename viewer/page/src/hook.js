@@ -41,6 +41,12 @@ export function exposeHook(app) {
       const here = app.stage.shape.positions(), there = app.stage.deformer.readPositions();
       return here.reduce((worst, x, i) => Math.max(worst, Math.abs(x - there[i])), 0) / app.model.about.diagonal;
     },
+    /** Largest difference between strains on the graphics card and on the processor. */
+    strainDisagreement() {
+      app.stage.drawNow();
+      const here = app.stage.shape.strains(), there = app.stage.deformer.readStrains();
+      return there.reduce((worst, strain, v) => Math.max(worst, Math.abs(strain - here[v])), 0);
+    },
     /** Red, green, blue and alpha at a point of the page, each 0 … 255. */
     pixel(clientX, clientY) {
       app.stage.drawNow();

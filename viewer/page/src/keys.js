@@ -1,6 +1,6 @@
 const TOOLS = {p: 'pull', b: 'brush', x: 'box', m: 'move'};
 const MODES = {1: 'simulate', 2: 'edit', 3: 'modes'};
-const COLOURS = ['plain', 'displacement', 'stretch'];
+const COLOURS = ['plain', 'displacement', 'strain'];
 
 /** Keys of the page. @param {import('./app.js').App} app */
 export function bindKeys(app) {

@@ -22,7 +22,7 @@ const ALL = [
   ['r', 'reset'],
   ['c', 'selected components'],
   ['w', 'wireframe'],
-  ['d', 'colour: plain, displacement, stretch'],
+  ['d', 'colour: plain, displacement, strain'],
   ['s', 'screenshot'],
   ['t', 'dark, light'],
   ['h', 'hide or show panels'],

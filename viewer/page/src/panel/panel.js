@@ -44,8 +44,8 @@ export class Panel {
 
   showOptions(options) {
     this.colours.show(options.colours);
-    this.stretchRange.hidden = options.colours !== 'stretch';
-    this.stretchRange.show(100 * options.stretchRange);
+    this.strainRange.hidden = options.colours !== 'strain';
+    this.strainRange.show(100 * options.strainRange);
     for (const name of ['wireframe', 'components', 'regions']) this[name]?.show(options[name]);
     if (!this.app.session.live) return;
     this.brush.show(100 * options.brush);
@@ -171,10 +171,10 @@ export class Panel {
   #view() {
     const {app} = this;
     const flip = (name, label, title) => (this[name] = toggle(label, (on) => app.setOptions({[name]: on}), {title}));
-    this.colours = segments('Colour', [['plain', 'Plain'], ['displacement', 'Displacement'], ['stretch', 'Stretch']],
+    this.colours = segments('Colour', [['plain', 'Plain'], ['displacement', 'Displacement'], ['strain', 'Strain']],
       (colours) => app.setOptions({colours}));
-    this.stretchRange = slider('Range', {low: 1, high: 100, log: true, unit: '%'}, (percent) => app.setOptions({stretchRange: percent / 100}));
-    const parts = [this.colours, this.stretchRange, flip('components', 'Selected components', 'The components whose forces stand for all (c)'),
+    this.strainRange = slider('Range', {low: 1, high: 100, log: true, unit: '%'}, (percent) => app.setOptions({strainRange: percent / 100}));
+    const parts = [this.colours, this.strainRange, flip('components', 'Selected components', 'The components whose forces stand for all (c)'),
       flip('wireframe', 'Wireframe', 'w')];
     if (app.session.live) {
       parts.push(flip('regions', 'Held regions'));

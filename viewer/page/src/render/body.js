@@ -4,14 +4,14 @@ import {
 import {edgesOf} from '../geometry/rings.js';
 import {colourTexture} from './colour_maps.js';
 import {PRECISION} from './pixel_pass.js';
-import {TEXEL_OF_NODE} from './node_grid.js';
+import {TEXEL_OF_VERTEX} from './vertex_grid.js';
 import {SHADING, shadowBy} from './shading.js';
 
 /** What the surface's colour says. */
 export const COLOURS = {
   plain: 0,
   displacement: 1,  // |x − X| [m]
-  stretch: 2,       // √ area over area at rest, less 1
+  strain: 2,        // λ − 1 of the surface's principal stretch that is farthest from 1
 };
 
 /** The surface as it is drawn: its vertices are texels that a Deformer fills. */
@@ -22,10 +22,10 @@ export class Body {
    */
   constructor(deformer, light) {
     this.deformer = deformer;
-    const {model} = deformer.shape;
-    this.tint = new BufferAttribute(new Uint8Array(4 * model.about.nodes), 4, true);
+    const {model, fans} = deformer.shape;
+    this.tint = new BufferAttribute(new Uint8Array(4 * fans.count), 4, true);
     this.geometry = new BufferGeometry();
-    this.geometry.setIndex(new BufferAttribute(model.triangles, 1));
+    this.geometry.setIndex(new BufferAttribute(fans.triangles, 1));
     this.geometry.setAttribute('tint', this.tint);
     const side = model.about.solid ? FrontSide : DoubleSide;
     const places = {
@@ -77,6 +77,9 @@ export class Body {
 
   /** @param {keyof COLOURS} colours  @param {number} range  value of the last colour */
   show(colours, range) {
+    const strained = colours === 'strain', comes = strained && !this.deformer.strained;
+    this.deformer.strained = strained;
+    if (comes) this.update();
     this.uniforms.colours.value = COLOURS[colours];
     this.uniforms.range.value = range;
   }
@@ -102,8 +105,10 @@ export class Body {
 
   /** @param {Iterable<[Iterable<number>, number[]]>} regions  nodes, and red, green, blue and share, each 0 … 255 */
   paint(regions) {
-    this.tint.array.fill(0);
-    for (const [nodes, colour] of regions) for (const v of nodes) this.tint.array.set(colour, 4 * v);
+    const tint = this.tint.array.fill(0), {nodeOf} = this.deformer.shape.fans;
+    for (const [nodes, colour] of regions) for (const v of nodes) tint.set(colour, 4 * v);
+    for (let v = this.deformer.shape.model.about.nodes; v < nodeOf.length; ++v)
+      tint.copyWithin(4 * v, 4 * nodeOf[v], 4 * nodeOf[v] + 4);
     this.tint.needsUpdate = true;
   }
 
@@ -118,7 +123,7 @@ export class Body {
 const PLAIN_VERTEX = `
   uniform mat4 modelViewMatrix, projectionMatrix;
   uniform sampler2D positions;
-  ${TEXEL_OF_NODE}
+  ${TEXEL_OF_VERTEX}
   void main() {
     gl_Position = projectionMatrix * modelViewMatrix * vec4(texelFetch(positions, texel_of(gl_VertexID), 0).xyz, 1);
   }
@@ -135,7 +140,7 @@ const VERTEX = `
   uniform sampler2D positions, normals, rest, sky_light;
   uniform int colours;
   uniform float range;
-  ${TEXEL_OF_NODE}
+  ${TEXEL_OF_VERTEX}
   in vec4 tint;
   out vec3 at, normal;
   out vec4 painted;
@@ -149,7 +154,7 @@ const VERTEX = `
     sky = texelFetch(sky_light, texel, 0).r;
     painted = vec4(tint.rgb * tint.rgb * tint.a, tint.a);
     share = colours == ${COLOURS.displacement} ? distance(at, texelFetch(rest, texel, 0).xyz) / range
-          : colours == ${COLOURS.stretch} ? 0.5 + 0.5 * n.w / range : 0.0;
+          : colours == ${COLOURS.strain} ? 0.5 + 0.5 * n.w / range : 0.0;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1);
   }
 `;
@@ -168,10 +173,7 @@ const FRAGMENT = `
 
   void main() {
     vec3 to_eye = normalize(cameraPosition - at);
-    // Creases stay sharp: there the triangle's own normal counts.
-    vec3 face = cross(dFdx(at), dFdy(at));
-    face *= (dot(face, normal) < 0.0 ? -1.0 : 1.0) * inversesqrt(max(dot(face, face), 1e-30));
-    vec3 n = normalize(mix(face, normal, smoothstep(0.68, 0.84, length(normal))));
+    vec3 n = normalize(normal);
     // A normal that turns away belongs to the other side of a sheet, or was smoothed around the edge of what is seen.
     float facing = dot(n, to_eye);
     if (facing < -0.25 || (sheet > 0.5 && !gl_FrontFacing && facing < 0.0)) n = -n;
@@ -180,7 +182,7 @@ const FRAGMENT = `
 
     vec3 colour = albedo;
     if (colours != 0) {
-      vec3 root = texture(colour_map, vec2((share * 255.0 + 0.5) / 256.0, colours == ${COLOURS.stretch} ? 0.75 : 0.25)).rgb;
+      vec3 root = texture(colour_map, vec2((share * 255.0 + 0.5) / 256.0, colours == ${COLOURS.strain} ? 0.75 : 0.25)).rgb;
       colour = root * root;
     }
     colour = colour * (1.0 - painted.a) + painted.rgb;
