@@ -17,7 +17,7 @@ import {BoxTool, BrushTool} from './tools/select_tools.js';
 const DEFAULTS = {
   tool: 'pull', colours: 'plain', strainRange: 0.25, wireframe: false, components: false, regions: true,
   pullStiffness: 1, brush: 0.05, gizmo: 'translate', amplitude: 0.1, stream: 'coordinates', theme: 'auto',
-  panels: window.innerWidth > 860,
+  panels: window.innerWidth > 720,
 };
 
 /** The page: it joins a session to the stage, the tools and the panel. What the session says is the truth. */
@@ -65,6 +65,7 @@ export class App {
   }
 
   release() {
+    if (this.ownPull) this.layout.hint.dismiss();
     this.ownPull = null;
     this.session.ask({do: 'release'});
     this.#showPulls();
@@ -236,6 +237,7 @@ export class App {
     if (this.fresh) this.session.drawn(this.fresh);
     this.fresh = null;
     this.layout.plots.tick(time);
+    this.layout.triad.turn(this.stage.camera);
   }
 
   #applyOptions() {
@@ -284,13 +286,16 @@ export class App {
     const {held, fixed, selected, handles, anchors} = REGION_COLOURS, regions = [];
     const {state, options, model} = this;
     if (options.regions && state) {
-      regions.push([model.about.fixed, [...held, 90]], [state.fixed, [...fixed, 190]]);
+      regions.push([model.about.fixed, [...held, 215]], [state.fixed, [...fixed, 215]]);
       if (state.mode === 'edit')
         for (const {id, nodes, movable} of state.handles)
           regions.push([nodes, [...(movable ? handles[(id - 1) % handles.length] : anchors), 225]]);
     }
     regions.push([this.selection, [...selected, 235]]);
     this.stage.body.paint(regions);
+    const named = [['held by the model', model.about.fixed, held], ['held in place', state?.fixed ?? [], fixed]];
+    this.layout.legend.showRegions(options.regions
+      ? named.filter(([, nodes]) => nodes.length > 0).map(([name, , colour]) => [name, colour]) : []);
     this.stage.invalidate();
   }
 

@@ -1,7 +1,7 @@
 import {count, quantity} from './quantity.js';
 import {ICONS} from './icons.js';
 import {REGION_COLOURS} from '../render/themes.js';
-import {button, buttons, choice, element, note, section, segments, slider, toggle, vector} from './widgets.js';
+import {button, buttons, choice, element, inModes, note, section, segments, slider, toggle, vector} from './widgets.js';
 
 /** The panel at the side: what can be set, by mode. */
 export class Panel {
@@ -25,7 +25,7 @@ export class Panel {
     }, element('span', {}, String(k + 1)), quantity(frequency, 'Hz'))));
   }
 
-  showState({settings, fixed, can_undo, can_redo}) {
+  showState({settings, fixed, handles, can_undo, can_redo}) {
     if (!this.app.session.live) return void this.speed.show(settings.speed);
     this.speed.show(settings.speed);
     this.step.show(1000 * settings.step);
@@ -40,6 +40,7 @@ export class Panel {
     this.free.disabled = fixed.length === 0;
     this.undo.disabled = !can_undo;
     this.redo.disabled = !can_redo;
+    this.save.disabled = handles.length === 0;
   }
 
   showOptions(options) {
@@ -88,8 +89,7 @@ export class Panel {
     this.step = slider('Time step', {low: 0.05, high: 50, log: true, unit: 'ms'}, (ms) => this.#set({step: ms / 1000}));
     this.integrator = choice('Integrator', [], (integrator) => this.#set({integrator}));
     const made = section('Time', this.speed, this.step, this.integrator);
-    made.dataset.for = 'simulate';
-    return made;
+    return inModes('simulate', made);
   }
 
   #forces() {
@@ -111,8 +111,7 @@ export class Panel {
       buttons(button('None', () => this.#set({gravity: [0, 0, 0]})), button('Earth', () => this.#set({gravity: along(-9.81)})),
         button('Sideways', () => this.#set({gravity: [9.81, 0, 0]}))),
       this.stiffness, this.massDamping, this.stiffnessDamping, this.floor, this.floorHeight);
-    made.dataset.for = 'simulate';
-    return made;
+    return inModes('simulate', made);
   }
 
   #damp(part) {
@@ -128,15 +127,14 @@ export class Panel {
     this.brush = slider('Brush', {low: 0.5, high: 25, log: true, unit: '%', title: 'Radius over the object’s diagonal'},
       (percent) => app.setOptions({brush: percent / 100}));
     this.selected = note('');
-    this.fix = button('Hold in place', () => app.fixSelection(), {kind: 'only-simulate'});
-    this.free = button('Free all', () => app.session.ask({do: 'fix', nodes: []}), {kind: 'only-simulate'});
-    this.make = button('Movable handle', () => app.makeHandle(true), {kind: 'only-edit primary', title: 'Enter'});
-    this.hold = button('Fixed handle', () => app.makeHandle(false), {kind: 'only-edit'});
+    this.fix = inModes('simulate', button('Hold in place', () => app.fixSelection()));
+    this.free = inModes('simulate', button('Free all', () => app.session.ask({do: 'fix', nodes: []})));
+    this.make = inModes('edit', button('Movable handle', () => app.makeHandle(true), {kind: 'primary', title: 'Enter'}));
+    this.hold = inModes('edit', button('Fixed handle', () => app.makeHandle(false)));
     this.drop = button('Clear', () => app.select([], 'replace'), {title: 'Esc'});
     const made = section('Selection', this.brush, this.selected, buttons(this.make, this.hold, this.fix, this.free, this.drop));
-    made.dataset.for = 'simulate edit';
     this.showSelection(0);
-    return made;
+    return inModes('simulate edit', made);
   }
 
   #editing() {
@@ -145,15 +143,14 @@ export class Panel {
     this.gizmo = segments('Gizmo', [['translate', 'Translate', 'g'], ['rotate', 'Rotate', 'g']], (gizmo) => app.setOptions({gizmo}));
     this.undo = button('Undo', () => app.session.ask({do: 'undo'}), {title: 'Ctrl+Z'});
     this.redo = button('Redo', () => app.session.ask({do: 'redo'}), {title: 'Ctrl+Shift+Z'});
+    this.save = button('Save', () => app.save('scene'), {title: 'A scene that `supple edit` takes'});
     const file = element('input', {type: 'file', accept: '.json,application/json', hidden: true, 'aria-label': 'Scene file', onchange: async () => {
       if (file.files[0]) app.loadScene(await file.files[0].text());
       file.value = '';
     }});
     const made = section('Handles', this.handleList, this.gizmo,
-      buttons(this.undo, this.redo, button('Save', () => app.save('scene'), {title: 'A scene that `supple edit` takes'}),
-        button('Load', () => file.click())), file);
-    made.dataset.for = 'edit';
-    return made;
+      buttons(this.undo, this.redo, this.save, button('Load', () => file.click())), file);
+    return inModes('edit', made);
   }
 
   #vibrations() {
@@ -164,8 +161,7 @@ export class Panel {
     });
     this.modeList = element('div', {class: 'mode-list', role: 'listbox', 'aria-label': 'Vibration modes'});
     const made = section('Vibration modes', this.amplitude, this.modeList);
-    made.dataset.for = 'modes';
-    return made;
+    return inModes('modes', made);
   }
 
   #view() {

@@ -17,8 +17,10 @@ const PLOTS = [
     text: (f) => quantity(f.kinetic + f.elastic + f.potential, 'J'),
   },
   {title: 'residual', log: true, lines: [['residual', (f) => f.residual]], text: (f) => f.residual.toExponential(1)},
-  {title: 'error', needsIndicator: true, lines: [['error', (f) => 100 * f.estimate]],
-    text: (f) => percent(f.estimate)},
+  {
+    title: 'error', lines: [['error', (f) => 100 * f.estimate]], help: 'Estimated distance from the full object over the size of the motion',
+    text: (f, page) => (Number.isFinite(f.estimate) ? percent(f.estimate) : `– ${page.indicator ? 'not yet' : 'no indicator'}`),
+  },
 ];
 
 /** Live plots of the last seconds. */
@@ -30,7 +32,8 @@ export class Plots {
   }
 
   setModel({about}) {
-    this.plots = PLOTS.filter((plot) => !plot.needsIndicator || about.indicator).map((plot) => new Plot(plot));
+    this.page.indicator = about.indicator;
+    this.plots = PLOTS.map((plot) => new Plot(plot));
     this.element.replaceChildren(...this.plots.map((plot) => plot.element));
   }
 
@@ -61,7 +64,7 @@ class Plot {
     const keys = plot.legend
       ? element('span', {class: 'keys'}, ...plot.lines.map(([name]) => element('i', {style: `--colour: var(--plot-${name})`}, name)))
       : null;
-    this.element = element('figure', {class: plot.wide ? 'plot wide' : 'plot'},
+    this.element = element('figure', {class: plot.wide ? 'plot wide' : 'plot', title: plot.help},
       element('figcaption', {}, keys ?? element('span', {}, plot.title), this.value), this.canvas);
   }
 

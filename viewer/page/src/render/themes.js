@@ -6,8 +6,8 @@ export const THEMES = {
 
 /** Red, green and blue of regions, each 0 … 255. */
 export const REGION_COLOURS = {
-  held: [112, 122, 134],       // by the model
-  fixed: [74, 84, 98],         // by a user
+  held: [54, 62, 76],          // by the model
+  fixed: [150, 92, 40],        // by a user
   selected: [250, 176, 60],
   handles: [[226, 87, 43], [46, 139, 120], [142, 99, 190], [204, 150, 30], [196, 72, 118], [60, 120, 190]],
   anchors: [96, 106, 120],     // handles that do not move
