@@ -286,12 +286,12 @@ export class App {
     const {held, fixed, selected, handles, anchors} = REGION_COLOURS, regions = [];
     const {state, options, model} = this;
     if (options.regions && state) {
-      regions.push([model.about.fixed, [...held, 215]], [state.fixed, [...fixed, 215]]);
+      regions.push([model.about.fixed, held], [state.fixed, fixed]);
       if (state.mode === 'edit')
         for (const {id, nodes, movable} of state.handles)
-          regions.push([nodes, [...(movable ? handles[(id - 1) % handles.length] : anchors), 225]]);
+          regions.push([nodes, movable ? handles[(id - 1) % handles.length] : anchors]);
     }
-    regions.push([this.selection, [...selected, 235]]);
+    regions.push([this.selection, selected]);
     this.stage.body.paint(regions);
     const named = [['held by the model', model.about.fixed, held], ['held in place', state?.fixed ?? [], fixed]];
     this.layout.legend.showRegions(options.regions

@@ -103,10 +103,10 @@ export class Body {
     if (this.lines) this.lines.visible = on;
   }
 
-  /** @param {Iterable<[Iterable<number>, number[]]>} regions  nodes, and red, green, blue and share, each 0 … 255 */
+  /** @param {Iterable<[Iterable<number>, number[]]>} regions  nodes, and red, green and blue, each 0 … 255 */
   paint(regions) {
     const tint = this.tint.array.fill(0), {nodeOf} = this.deformer.shape.fans;
-    for (const [nodes, colour] of regions) for (const v of nodes) tint.set(colour, 4 * v);
+    for (const [nodes, colour] of regions) for (const v of nodes) tint.set([...colour, 255], 4 * v);
     for (let v = this.deformer.shape.model.about.nodes; v < nodeOf.length; ++v)
       tint.copyWithin(4 * v, 4 * nodeOf[v], 4 * nodeOf[v] + 4);
     this.tint.needsUpdate = true;
@@ -164,6 +164,7 @@ const FRAGMENT = `
   uniform sampler2D colour_map;
   uniform int colours;
   uniform float ghost, sheet;
+  const float PAINT = 0.88;  // of a region's colour
   ${SHADING}
   ${shadowBy(8)}
   in vec3 at, normal;
@@ -185,7 +186,9 @@ const FRAGMENT = `
       vec3 root = texture(colour_map, vec2((share * 255.0 + 0.5) / 256.0, colours == ${COLOURS.strain} ? 0.75 : 0.25)).rgb;
       colour = root * root;
     }
-    colour = colour * (1.0 - painted.a) + painted.rgb;
+    // Regions end halfway to the next node, with a sharp edge: what fades would look like a shadow.
+    float width = 0.75 * fwidth(painted.a);
+    colour = mix(colour, painted.rgb / max(painted.a, 1e-3), PAINT * smoothstep(0.5 - width, 0.5 + width, painted.a));
     float cosine = dot(n, key_towards);
     float key = cosine > 0.0 ? cosine * unshadowed(at + 0.012 * scene_radius * n, 0.008) : 0.0;
     float alpha = ghost > 0.5 ? mix(0.30, 0.95, pow(1.0 - abs(dot(n, to_eye)), 1.5)) : 1.0;
