@@ -15,7 +15,7 @@ import {PullTool} from './tools/pull_tool.js';
 import {BoxTool, BrushTool} from './tools/select_tools.js';
 
 const DEFAULTS = {
-  tool: 'pull', colours: 'plain', strainRange: 0.25, wireframe: false, components: false, regions: true,
+  tool: 'pull', colours: 'plain', strainRange: 0.25, wireframe: false, components: false, regions: true, overlay: false,
   pullStiffness: 1, brush: 0.05, gizmo: 'translate', amplitude: 0.1, stream: 'coordinates', theme: 'auto',
   panels: window.innerWidth > 720,
 };
@@ -47,12 +47,23 @@ export class App {
     return this.state?.mode ?? 'simulate';
   }
 
+  /** Whether two recordings are shown. */
+  get compares() {
+    return Boolean(this.stage.reference);
+  }
+
+  /** What colours may say at this moment. */
+  get colours() {
+    return ['plain', 'displacement', 'strain', ...(this.compares ? ['error'] : [])];
+  }
+
   // What the person at the page wants
 
   setOptions(options) {
     Object.assign(this.options, options);
     if ('theme' in options) this.#applyTheme();
     if ('stream' in options) this.session.choose(options.stream);
+    if ('overlay' in options && this.compares) this.#arrange();
     if ('gizmo' in options) this.tools.move.way = options.gizmo;
     this.#applyOptions();
   }
@@ -179,7 +190,7 @@ export class App {
     this.springs = new Springs(shape);
     this.components = new Components(this.stage.body, model);
     this.stage.scene.add(this.springs.group, this.components.mesh);
-    this.displacementRange = 1e-3 * model.about.diagonal;
+    this.displacementRange = this.errorRange = 1e-4 * model.about.diagonal;
     this.layout.setModel(model, this.session);
     if (!this.stage.deformer.computes) this.setOptions({stream: 'positions'});
     for (const text of model.about.notes ?? []) this.layout.toasts.say(text);
@@ -194,7 +205,7 @@ export class App {
     const before = this.state;
     this.state = state;
     if (state.mode !== before?.mode) {
-      this.setOptions({tool: {simulate: 'pull', edit: state.handles.length ? 'move' : 'brush', modes: null}[state.mode]});
+      this.setOptions({tool: {simulate: 'pull', edit: state.handles.length ? 'move' : 'brush'}[state.mode] ?? null});
       if (state.mode === 'modes' && this.model?.about.frequencies.length) this.showMode(this.shownMode ?? 0);
     }
     if (this.wantsHandle) {
@@ -209,11 +220,31 @@ export class App {
     if (!this.ready) return;
     if (frame.kind === 'coordinates' && frame.values.length !== this.model.about.dimension) return;
     this.stage.shape.take(frame);
-    this.layout.plots.take(frame);
+    const reference = frame.reference && {kind: 'positions', values: frame.reference};
+    if (Boolean(reference) !== this.compares) this.#compare(reference);
+    else if (reference) this.stage.reference.shape.take(reference);
+    this.layout.plots.take(frame, this.mode);
     this.layout.showFrame(frame);
     this.fresh = frame;
     if (frame.kind === 'coordinates') this.recorder.take(frame.values, performance.now() / 1000);
     this.stage.shapeChanged();
+  }
+
+  /** Begins or ends to show a second recording. */
+  #compare(reference) {
+    const shape = reference && new Shape(this.model, this.stage.shape);
+    shape?.take(reference);
+    this.stage.setReference(shape);
+    if (!this.colours.includes(this.options.colours)) this.options.colours = 'plain';
+    this.#arrange();
+    this.#applyOptions();
+  }
+
+  #arrange() {
+    this.stage.overlay = this.options.overlay;
+    const {compares, layout, stage, options: {overlay}} = this, {names} = this.model.about.recording ?? {};
+    layout.labels.show(compares && !overlay ? stage.bodies.map(({shift}, k) => [names[k], stage.under(shift)]) : []);
+    layout.legend.showNames('recordings', compares && overlay ? names.map((name, k) => [name, stage.colours[k]]) : []);
   }
 
   // What is shown
@@ -226,10 +257,12 @@ export class App {
 
   #beforeDrawing() {
     this.springs?.update();
-    if (this.options.colours !== 'displacement') return;
-    const {displacement} = this.stage.extent ?? {displacement: 0};
+    const {stage} = this, {displacement} = stage.extent ?? {displacement: 0};
     // The scale grows at once and shrinks slowly, so that colours do not flicker.
-    this.displacementRange = Math.max(displacement, 0.995 * this.displacementRange, 1e-4 * this.model.about.diagonal);
+    const range = (before, now) => Math.max(now, 0.998 * before, 1e-4 * this.model.about.diagonal);
+    if (this.options.colours === 'displacement') this.displacementRange = range(this.displacementRange, displacement);
+    else if (this.options.colours === 'error') this.errorRange = range(this.errorRange, stage.shape.distance(stage.reference.shape));
+    else return;
     this.#applyColours();
   }
 
@@ -238,6 +271,7 @@ export class App {
     this.fresh = null;
     this.layout.plots.tick(time);
     this.layout.triad.turn(this.stage.camera);
+    this.layout.labels.place(this.stage);
   }
 
   #applyOptions() {
@@ -245,11 +279,12 @@ export class App {
     this.layout.panel.showOptions(options);
     this.layout.showOptions(options);
     if (!this.ready) return;
-    stage.body.ghost = options.components;
-    stage.body.wireframe = options.wireframe;
-    this.components.mesh.visible = options.components;
+    const components = options.components && !this.compares;
+    stage.body.ghost = components;
+    for (const body of stage.bodies) body.wireframe = options.wireframe;
+    this.components.mesh.visible = components;
     const {low, high} = this.components.range;
-    this.layout.legend.show('weights', options.components
+    this.layout.legend.show('weights', components
       ? {title: 'weight of a component', map: 'sequential', labels: [low, high].map((w) => w.toPrecision(3))} : null);
     stage.canvas.style.cursor = {pull: 'grab', brush: 'crosshair', box: 'crosshair'}[options.tool] ?? '';
     this.#applyColours();
@@ -259,12 +294,15 @@ export class App {
   }
 
   #applyColours() {
-    const {colours, strainRange} = this.options, {body} = this.stage;
-    const range = colours === 'displacement' ? this.displacementRange : strainRange;
+    const {colours, strainRange, overlay} = this.options, {body, reference} = this.stage;
+    const range = {displacement: this.displacementRange, error: this.errorRange}[colours] ?? strainRange;
     body.show(colours, range);
+    reference?.show(overlay ? 'plain' : colours, range);
+    const lengths = {map: 'sequential', labels: ['0', quantity(range / 2, 'm'), quantity(range, 'm')]};
     this.layout.legend.show('colours', {
       plain: null,
-      displacement: {title: 'displacement', map: 'sequential', labels: ['0', quantity(range / 2, 'm'), quantity(range, 'm')]},
+      displacement: {title: 'displacement', ...lengths},
+      error: {title: 'distance from each other', ...lengths},
       strain: {title: 'strain of the surface', map: 'diverging', labels: [`−${100 * range} %`, '0', `+${100 * range} %`]},
     }[colours]);
   }
@@ -285,17 +323,18 @@ export class App {
     if (!this.ready) return;
     const {held, fixed, selected, handles, anchors} = REGION_COLOURS, regions = [];
     const {state, options, model} = this;
+    const inPlace = this.mode === 'simulate' ? state?.fixed ?? [] : [];
     if (options.regions && state) {
-      regions.push([model.about.fixed, held], [state.fixed, fixed]);
+      regions.push([model.about.fixed, held], [inPlace, fixed]);
       if (state.mode === 'edit')
         for (const {id, nodes, movable} of state.handles)
           regions.push([nodes, movable ? handles[(id - 1) % handles.length] : anchors]);
     }
     regions.push([this.selection, selected]);
-    this.stage.body.paint(regions);
-    const named = [['held by the model', model.about.fixed, held], ['held in place', state?.fixed ?? [], fixed]];
-    this.layout.legend.showRegions(options.regions
-      ? named.filter(([, nodes]) => nodes.length > 0).map(([name, , colour]) => [name, colour]) : []);
+    for (const body of this.stage.bodies) body.paint(regions);
+    const named = [['held by the model', model.about.fixed, held], ['held in place', inPlace, fixed]];
+    this.layout.legend.showNames('regions', options.regions
+      ? named.filter(([, nodes]) => nodes.length > 0).map(([name, , colour]) => [name, `rgb(${colour.join(' ')})`]) : []);
     this.stage.invalidate();
   }
 

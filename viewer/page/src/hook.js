@@ -6,6 +6,7 @@ export function exposeHook(app) {
     get settled() { return app.stage.settled; },
     get connected() { return session.connected; },
     get client() { return session.client; },
+    get compares() { return app.compares; },
     get state() { return app.state; },
     get frame() { return app.frame; },
     get about() { return app.model?.about; },
@@ -34,6 +35,7 @@ export function exposeHook(app) {
     /** Where a node is on the page. */
     project: (node) => app.stage.project(app.stage.shape.position(node)),
     position: (node) => [...app.stage.shape.position(node)],
+    referencePositions: () => Array.from(app.stage.reference.shape.positions()),
     positions: () => Array.from(app.stage.shape.positions()),
     /** Largest distance between positions on the graphics card and on the processor, over the object's diagonal. */
     disagreement() {

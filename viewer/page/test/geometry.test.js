@@ -34,6 +34,13 @@ test('streamed positions replace the coordinates until these come again', () => 
   near(shape.positions(), model.rest);
 });
 
+test('shapes of one model share its surface and know their distance', () => {
+  const model = sheet(), shape = new Shape(model), other = new Shape(model, shape);
+  other.take({kind: 'positions', values: Float32Array.from({length: 3 * model.about.surface_nodes}, (_, i) => (i === 10 ? 0.5 : 0))});
+  near([shape.distance(other), other.distance(shape)], [0.5, 0.5]);
+  assert.equal(other.fans, shape.fans);
+});
+
 test('normals of a plane are normal to it', () => {
   const normals = new Shape(sheet()).normals();
   for (let v = 0; v < normals.length; v += 3) near(normals.subarray(v, v + 3), [0, 0, 1]);

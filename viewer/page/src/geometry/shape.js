@@ -7,13 +7,16 @@ import {strainsOf} from './strain.js';
  * regions and exports use it; drawing does not.
  */
 export class Shape {
-  /** @param {import('../session/model.js').Model} model */
-  constructor(model) {
+  /**
+   * @param {import('../session/model.js').Model} model
+   * @param {Shape} [like]   another shape of the model, whose surface it shares
+   */
+  constructor(model, like) {
     this.model = model;
     this.q = new Float64Array(model.about.dimension);
     this.displacements = null;  // of the surface's nodes, where a server streams positions
-    this.rings = ringsOf(model.triangles, model.about.nodes);
-    this.fans = fansOf(model.rest, model.triangles, this.rings);
+    this.rings = like?.rings ?? ringsOf(model.triangles, model.about.nodes);
+    this.fans = like?.fans ?? fansOf(model.rest, model.triangles, this.rings);
     this.stale = true;
     this.cached = new Float64Array(3 * model.about.nodes);
     this.samples = evenSamples(model.about.surface_nodes, 400);
@@ -73,6 +76,16 @@ export class Shape {
     }
     const centre = low.map((l, axis) => (l + high[axis]) / 2);
     return {centre, radius: Math.hypot(...low.map((l, axis) => high[axis] - l)) / 2, displacement: Math.sqrt(displacement)};
+  }
+
+  /** Largest distance of the same few hundred nodes from those of another shape of the model. */
+  distance(other) {
+    let squared = 0;
+    for (const node of this.samples) {
+      const x = this.position(node), y = other.position(node);
+      squared = Math.max(squared, (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2);
+    }
+    return Math.sqrt(squared);
   }
 
   /** Normals of the vertices that are drawn, weighted by area; 0 for those without a triangle. */

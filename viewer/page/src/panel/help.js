@@ -3,11 +3,12 @@ import {element} from './widgets.js';
 const LIVE = [
   ['drag on the object', 'pull it, or what the tool in hand does'],
   ['Shift at the end of a pull', 'the spring stays'],
-  ['1  2  3', 'simulate, edit, modes'],
+  ['1  2  3  4', 'simulate, edit, modes, replay'],
   ['p  b  x  m', 'pull, brush, box, move handles'],
   ['g', 'gizmo: translate or rotate'],
   ['Enter', 'selection: a handle (edit), held in place (simulate)'],
   ['Ctrl with brush or box', 'take out of the selection'],
+  ['o', 'replay: overlay, or beside'],
   ['Esc', 'drop the selection'],
   ['Ctrl+Z  Ctrl+Shift+Z', 'undo, redo'],
 ];
@@ -22,7 +23,7 @@ const ALL = [
   ['r', 'reset'],
   ['c', 'selected components'],
   ['w', 'wireframe'],
-  ['d', 'colour: plain, displacement, strain'],
+  ['d', 'colour: plain, displacement, strain, error'],
   ['s', 'screenshot'],
   ['t', 'dark, light'],
   ['h', 'hide or show panels'],

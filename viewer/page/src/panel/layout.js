@@ -2,6 +2,7 @@ import {count, percent, quantity} from './quantity.js';
 import {helpDialog} from './help.js';
 import {Hint} from './hint.js';
 import {ICONS} from './icons.js';
+import {Labels} from './labels.js';
 import {Legend} from './legend.js';
 import {Panel} from './panel.js';
 import {Plots} from './plots.js';
@@ -22,6 +23,7 @@ export class Layout {
     this.toasts = new Toasts();
     this.hint = new Hint();
     this.triad = new Triad();
+    this.labels = new Labels();
     this.plots = new Plots();
     this.legend = new Legend();
     this.legend.show('colours', null);
@@ -30,7 +32,8 @@ export class Layout {
 
     this.name = element('h1', {}, 'Supple');
     this.facts = element('p', {});
-    this.modes = segments('What is done with the object', [['simulate', 'Simulate', '1'], ['edit', 'Edit', '2'], ['modes', 'Modes', '3']],
+    this.modes = segments('What is done with the object', [['simulate', 'Simulate', '1'], ['edit', 'Edit', '2'], ['modes', 'Modes', '3'],
+      ['replay', 'Replay', '4']],
       (mode) => app.session.ask({do: 'mode', mode}));
     this.toolBar = segments('Tool', [
       ['pull', ICONS.pull, 'Pull (p)'], ['brush', ICONS.brush, 'Select with a brush (b)'],
@@ -51,7 +54,7 @@ export class Layout {
       inModes('simulate modes replay', this.play),
       inModes('simulate replay', button('Step', ask('step'), {icon: ICONS.step, title: 'One step (.)', kind: 'round'})),
       inModes('simulate edit modes', this.record), inModes('replay', this.seek), inModes('simulate replay', this.clock), this.badge);
-    inModes('simulate edit', this.plots.element);
+    inModes('simulate edit replay', this.plots.element);
     this.progress = element('div', {class: 'progress card'}, element('h2', {}, 'Waiting for the server'),
       element('progress', {max: 1}), element('p', {}, ''));
     this.connection = element('div', {class: 'connection', role: 'status', hidden: true}, 'The server is gone. Waiting for it to come back …');
@@ -66,7 +69,7 @@ export class Layout {
     root.classList.add('waiting');
     this.bottom = element('div', {class: 'bottom'}, this.transport, this.legend.element);
     const notices = element('div', {class: 'notices'}, this.connection, live && !this.hint.seen ? this.hint.element : null, this.toasts.element);
-    root.append(this.stage, element('header', {}, this.name, this.facts), ...(live ? [this.modes, this.toolBar] : []), corner,
+    root.append(this.stage, this.labels.element, element('header', {}, this.name, this.facts), ...(live ? [this.modes, this.toolBar] : []), corner,
       this.panel.element, this.bottom, this.triad.element, notices, this.help, this.progress);
     this.modes.classList.add('modes');
     new ResizeObserver(() => this.#arrange()).observe(root);
@@ -83,7 +86,10 @@ export class Layout {
       `${about.dimension} unknowns · ${about.components} components${error}`);
     this.plots.setModel(model);
     this.panel.setModel(model);
-    if (!session.live) this.seek.max = session.duration;
+    const {begin, duration} = about.recording ?? {begin: 0, duration: session.duration};
+    this.seek.min = begin;
+    this.seek.max = this.end = begin + duration;
+    this.modes.querySelector('[data-value=replay]').hidden = !about.recording;
   }
 
   showState(state) {
@@ -113,8 +119,10 @@ export class Layout {
   }
 
   showFrame(frame) {
-    this.clock.textContent = `${frame.time.toFixed(2)} s`;
-    if (!this.seek.matches(':active')) this.seek.value = frame.time;
+    const replays = this.app.mode === 'replay';
+    this.clock.textContent = replays ? `${frame.time.toFixed(2)} / ${this.end.toFixed(2)} s` : `${frame.time.toFixed(2)} s`;
+    if (replays && !this.seek.matches(':active')) this.seek.value = frame.time;
+    this.seek.style.setProperty('--share', (this.seek.valueAsNumber - this.seek.min) / (this.seek.max - this.seek.min));
     const said = frame.unconverged ? ['bad', 'last step did not converge']
       : frame.behind ? ['slow', `${quantity(frame.realTime)} × real time`]
       : frame.untrained ? ['slow', 'beyond what was trained'] : null;

@@ -22,10 +22,10 @@ export class Legend {
     });
   }
 
-  /** Says what regions are. @param {[string, number[]][]} regions  names and red, green and blue, each 0 … 255 */
-  showRegions(regions) {
-    this.#put('regions', regions.length > 0 ? regions : null, () => element('ul', {class: 'regions'},
-      ...regions.map(([name, colour]) => element('li', {}, element('i', {style: `background: rgb(${colour.join(' ')})`}), name))));
+  /** Says what has a colour of its own. @param {string} key  @param {[string, string][]} names  each with its colour */
+  showNames(key, names) {
+    this.#put(key, names.length > 0 ? names : null, () => element('ul', {class: 'names'},
+      ...names.map(([name, colour]) => element('li', {}, element('i', {style: `background: ${colour}`}), name))));
   }
 
   #put(key, content, draw) {

@@ -11,7 +11,7 @@ export class Panel {
     const {live} = app.session;
     this.element = element('aside', {class: 'panel card', 'aria-label': 'Settings'});
     if (live) this.element.append(this.#time(), this.#forces(), this.#editing(), this.#vibrations(), this.#selection());
-    else this.element.append(this.#playback());
+    this.element.append(this.#playback());
     this.element.append(this.#view(), ...(live ? [this.#export()] : []));
   }
 
@@ -26,7 +26,8 @@ export class Panel {
   }
 
   showState({settings, fixed, handles, can_undo, can_redo}) {
-    if (!this.app.session.live) return void this.speed.show(settings.speed);
+    this.playbackSpeed.show(settings.speed);
+    if (!this.app.session.live) return;
     this.speed.show(settings.speed);
     this.step.show(1000 * settings.step);
     this.stiffness.show(settings.stiffness);
@@ -45,6 +46,8 @@ export class Panel {
 
   showOptions(options) {
     this.colours.show(options.colours);
+    this.colours.querySelector('[data-value=error]').hidden = this.overlay.hidden = !this.app.compares;
+    this.overlay.show(options.overlay);
     this.strainRange.hidden = options.colours !== 'strain';
     this.strainRange.show(100 * options.strainRange);
     for (const name of ['wireframe', 'components', 'regions']) this[name]?.show(options[name]);
@@ -167,23 +170,25 @@ export class Panel {
   #view() {
     const {app} = this;
     const flip = (name, label, title) => (this[name] = toggle(label, (on) => app.setOptions({[name]: on}), {title}));
-    this.colours = segments('Colour', [['plain', 'Plain'], ['displacement', 'Displacement'], ['strain', 'Strain']],
+    this.colours = segments('Colour', [['plain', 'Plain'], ['displacement', 'Displacement'], ['strain', 'Strain'], ['error', 'Error']],
       (colours) => app.setOptions({colours}));
     this.strainRange = slider('Range', {low: 1, high: 100, log: true, unit: '%'}, (percent) => app.setOptions({strainRange: percent / 100}));
     const parts = [this.colours, this.strainRange, flip('components', 'Selected components', 'The components whose forces stand for all (c)'),
       flip('wireframe', 'Wireframe', 'w')];
+    if (app.session.live) inModes('simulate edit modes', this.components);
     if (app.session.live) {
       parts.push(flip('regions', 'Held regions'));
       this.positions = toggle('Deform on the server', (on) => app.setOptions({stream: on ? 'positions' : 'coordinates'}),
         {title: 'Positions travel instead of reduced coordinates: for graphics without float targets'});
-      parts.push(this.positions);
+      parts.push(inModes('simulate edit modes', this.positions));
     }
     return section('View', ...parts);
   }
 
   #playback() {
-    this.speed = slider('Speed', {low: 0.01, high: 10, log: true, unit: '×'}, (speed) => this.#set({speed}));
-    return section('Recording', this.speed);
+    this.playbackSpeed = slider('Speed', {low: 0.01, high: 10, log: true, unit: '×'}, (speed) => this.#set({speed}));
+    this.overlay = toggle('Overlay', (overlay) => this.app.setOptions({overlay}), {title: 'The second as a ghost in the place of the first (o)'});
+    return inModes('replay', section('Replay', this.playbackSpeed, this.overlay));
   }
 
   #export() {

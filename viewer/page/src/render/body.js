@@ -1,5 +1,5 @@
 import {
-  BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, GLSL3, LineSegments, Mesh, RawShaderMaterial, Scene,
+  BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, GLSL3, LineSegments, Mesh, RawShaderMaterial, Vector3,
 } from 'three';
 import {edgesOf} from '../geometry/rings.js';
 import {colourTexture} from './colour_maps.js';
@@ -12,6 +12,7 @@ export const COLOURS = {
   plain: 0,
   displacement: 1,  // |x − X| [m]
   strain: 2,        // λ − 1 of the surface's principal stretch that is farthest from 1
+  error: 3,         // |x − x of the other recording| [m]
 };
 
 /** The surface as it is drawn: its vertices are texels that a Deformer fills. */
@@ -30,7 +31,8 @@ export class Body {
     const side = model.about.solid ? FrontSide : DoubleSide;
     const places = {
       columns: {value: deformer.grid.columns},
-      positions: {value: null}, normals: {value: null}, rest: {value: deformer.rest},
+      positions: {value: null}, normals: {value: null}, rest: {value: deformer.rest}, other: {value: null},
+      shift: {value: new Vector3()},
     };
     this.uniforms = {
       ...places, ...light,
@@ -54,9 +56,8 @@ export class Body {
       glslVersion: GLSL3, side, uniforms: places, colorWrite: false,
       vertexShader: PRECISION + PLAIN_VERTEX, fragmentShader: PRECISION + 'void main() {}',
     });
-    const caster = new Mesh(this.geometry, this.casterMaterial);
-    caster.frustumCulled = false;
-    this.casters = new Scene().add(caster);
+    this.caster = new Mesh(this.geometry, this.casterMaterial);
+    this.caster.frustumCulled = false;
 
     // Of a ghost only the nearest layer is seen: the depths of this veil hide those behind.
     this.veilMaterial = this.casterMaterial.clone();
@@ -67,6 +68,15 @@ export class Body {
     this.veil.visible = false;
     this.mesh.renderOrder = 2;
     this.mesh.add(this.veil);
+  }
+
+  get shape() {
+    return this.deformer.shape;
+  }
+
+  /** Where the object is drawn, from where it is. */
+  get shift() {
+    return this.uniforms.shift.value;
   }
 
   update() {
@@ -84,17 +94,18 @@ export class Body {
     this.uniforms.range.value = range;
   }
 
-  /** Lets what is inside shimmer through. */
+  /** Lets what is inside, or another body in the same place, shimmer through. */
   set ghost(on) {
     this.uniforms.ghost.value = on ? 1 : 0;
     this.material.transparent = on;
+    for (const material of [this.material, this.veilMaterial]) material.polygonOffsetFactor = material.polygonOffsetUnits = on ? 4 : 1;
     this.veil.visible = on;
   }
 
   set wireframe(on) {
     if (on && !this.lines) {
       const geometry = new BufferGeometry();
-      geometry.setIndex(new BufferAttribute(edgesOf(this.deformer.shape.rings), 1));
+      geometry.setIndex(new BufferAttribute(edgesOf(this.shape.rings), 1));
       geometry.setAttribute('tint', this.tint);
       this.lines = new LineSegments(geometry, this.lineMaterial);
       this.lines.frustumCulled = false;
@@ -105,9 +116,9 @@ export class Body {
 
   /** @param {Iterable<[Iterable<number>, number[]]>} regions  nodes, and red, green and blue, each 0 … 255 */
   paint(regions) {
-    const tint = this.tint.array.fill(0), {nodeOf} = this.deformer.shape.fans;
+    const tint = this.tint.array.fill(0), {nodeOf} = this.shape.fans;
     for (const [nodes, colour] of regions) for (const v of nodes) tint.set([...colour, 255], 4 * v);
-    for (let v = this.deformer.shape.model.about.nodes; v < nodeOf.length; ++v)
+    for (let v = this.shape.model.about.nodes; v < nodeOf.length; ++v)
       tint.copyWithin(4 * v, 4 * nodeOf[v], 4 * nodeOf[v] + 4);
     this.tint.needsUpdate = true;
   }
@@ -123,9 +134,11 @@ export class Body {
 const PLAIN_VERTEX = `
   uniform mat4 modelViewMatrix, projectionMatrix;
   uniform sampler2D positions;
+  uniform vec3 shift;
   ${TEXEL_OF_VERTEX}
   void main() {
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(texelFetch(positions, texel_of(gl_VertexID), 0).xyz, 1);
+    vec3 at = texelFetch(positions, texel_of(gl_VertexID), 0).xyz + shift;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1);
   }
 `;
 
@@ -137,7 +150,8 @@ const LINE_FRAGMENT = `
 
 const VERTEX = `
   uniform mat4 modelViewMatrix, projectionMatrix;
-  uniform sampler2D positions, normals, rest, sky_light;
+  uniform sampler2D positions, normals, rest, other, sky_light;
+  uniform vec3 shift;
   uniform int colours;
   uniform float range;
   ${TEXEL_OF_VERTEX}
@@ -154,7 +168,9 @@ const VERTEX = `
     sky = texelFetch(sky_light, texel, 0).r;
     painted = vec4(tint.rgb * tint.rgb * tint.a, tint.a);
     share = colours == ${COLOURS.displacement} ? distance(at, texelFetch(rest, texel, 0).xyz) / range
+          : colours == ${COLOURS.error} ? distance(at, texelFetch(other, texel, 0).xyz) / range
           : colours == ${COLOURS.strain} ? 0.5 + 0.5 * n.w / range : 0.0;
+    at += shift;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1);
   }
 `;

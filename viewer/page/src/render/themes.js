@@ -1,7 +1,7 @@
 /** What the studio is painted with; the panel's colours are in style.css. */
 export const THEMES = {
-  light: {top: '#f8f9fb', bottom: '#e6e9ee', object: '#8db3da', lines: '#1d2b3a', grid: '#b9c2cd', shadow: 0.78},
-  dark: {top: '#23272e', bottom: '#3a3f48', object: '#8db3da', lines: '#0a0f16', grid: '#7d8896', shadow: 0.85},
+  light: {top: '#f8f9fb', bottom: '#e6e9ee', object: '#8db3da', reference: '#dcae83', lines: '#1d2b3a', grid: '#b9c2cd', shadow: 0.78},
+  dark: {top: '#23272e', bottom: '#3a3f48', object: '#8db3da', reference: '#dcae83', lines: '#0a0f16', grid: '#7d8896', shadow: 0.85},
 };
 
 /** Red, green and blue of regions, each 0 … 255. */
