@@ -14,8 +14,9 @@ const LIVE = [
 ];
 const ALL = [
   ['drag beside it, or with Alt', 'turn the view'],
-  ['right drag, two fingers', 'shift the view'],
-  ['wheel, pinch', 'zoom'],
+  ['right drag', 'shift the view'],
+  ['wheel', 'zoom'],
+  ['two fingers', 'zoom, turn the view'],
   ['double click', 'turn around this point'],
   ['f', 'show the whole object'],
   ['Space', 'play, pause'],

@@ -6,7 +6,7 @@ const KEY = 'supple-hint';
 /** A line for who is here for the first time. It goes, for good, when it was followed or closed. */
 export class Hint {
   constructor() {
-    const keys = matchMedia('(pointer: coarse)').matches ? 'two fingers zoom' : '? for keys';
+    const keys = matchMedia('(pointer: coarse)').matches ? 'two fingers zoom and turn' : '? for keys';
     this.element = element('div', {class: 'toast hint', 'data-for': 'simulate'},
       `Drag the object to pull it · drag beside it to turn · ${keys}`,
       button('Close the hint', () => this.dismiss(), {icon: ICONS.remove, kind: 'small'}));

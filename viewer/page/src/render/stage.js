@@ -1,5 +1,5 @@
 import {
-  Color, GLSL3, Matrix4, Mesh, PerspectiveCamera, PlaneGeometry, RawShaderMaterial, Scene, Vector3, WebGLRenderer,
+  Color, GLSL3, Matrix4, Mesh, PerspectiveCamera, PlaneGeometry, RawShaderMaterial, Scene, TOUCH, Vector3, WebGLRenderer,
 } from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {Body} from './body.js';
@@ -59,6 +59,8 @@ export class Stage {
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.18;
     this.controls.zoomToCursor = true;
+    // An object that fills a small screen leaves no room beside it, where one finger turns the view.
+    this.controls.touches.TWO = TOUCH.DOLLY_ROTATE;
     this.controls.addEventListener('change', () => this.invalidate());
   }
 
