@@ -72,6 +72,7 @@ test('the page shows the object on its ground', async () => {
   assert.ok(on[2] > on[0] + 15, `the object is blue, not ${on}`);
   assert.ok(Math.max(...off.slice(0, 3)) - Math.min(...off.slice(0, 3)) < 12 && off[0] > 200, `the background is light, not ${off}`);
   assert.equal(await page.textContent('h1'), await page.evaluate(() => supple.about.name));
+  assert.equal(await page.getByRole('button', {name: 'Replay'}).count(), 0, 'there is no recording');
   noErrors();
 });
 

@@ -81,12 +81,4 @@ describe('a recording of the reduced object beside the full one', {skip}, () => 
     await until(page, () => supple.state.mode === 'replay' && supple.compares);
     assert.deepEqual(page.errors, []);
   });
-
-  test('is not offered without a recording', async () => {
-    const other = await startServer();
-    const plain = await openPage(browser, other.url);
-    assert.equal(await plain.getByRole('button', {name: 'Replay'}).count(), 0);
-    await plain.context().close();
-    await other.stop();
-  });
 });

@@ -63,7 +63,10 @@ export class App {
     Object.assign(this.options, options);
     if ('theme' in options) this.#applyTheme();
     if ('stream' in options) this.session.choose(options.stream);
-    if ('overlay' in options && this.compares) this.#arrange();
+    if ('overlay' in options && this.compares) {
+      this.stage.overlay = options.overlay;
+      this.#nameRecordings();
+    }
     if ('gizmo' in options) this.tools.move.way = options.gizmo;
     this.#applyOptions();
   }
@@ -187,6 +190,7 @@ export class App {
     for (const thing of [this.springs?.group, this.components?.mesh]) if (thing) this.stage.scene.remove(thing);
     const shape = new Shape(model);
     this.stage.setShape(shape, {keepCamera: similar});
+    this.#nameRecordings();
     this.springs = new Springs(shape);
     this.components = new Components(this.stage.body, model);
     this.stage.scene.add(this.springs.group, this.components.mesh);
@@ -218,7 +222,8 @@ export class App {
   #takeFrame(frame) {
     this.frame = frame;
     if (!this.ready) return;
-    if (frame.kind === 'coordinates' && frame.values.length !== this.model.about.dimension) return;
+    const {dimension, surface_nodes} = this.model.about;
+    if (frame.values.length !== (frame.kind === 'coordinates' ? dimension : 3 * surface_nodes)) return;
     this.stage.shape.take(frame);
     const reference = frame.reference && {kind: 'positions', values: frame.reference};
     if (Boolean(reference) !== this.compares) this.#compare(reference);
@@ -236,21 +241,22 @@ export class App {
     shape?.take(reference);
     this.stage.setReference(shape);
     if (!this.colours.includes(this.options.colours)) this.options.colours = 'plain';
-    this.#arrange();
+    this.stage.overlay = this.options.overlay;
+    this.#nameRecordings();
     this.#applyOptions();
   }
 
-  #arrange() {
-    this.stage.overlay = this.options.overlay;
+  /** Under the objects where these are side by side, else by their colours. */
+  #nameRecordings() {
     const {compares, layout, stage, options: {overlay}} = this, {names} = this.model.about.recording ?? {};
-    layout.labels.show(compares && !overlay ? stage.bodies.map(({shift}, k) => [names[k], stage.under(shift)]) : []);
+    layout.labels.show(compares && !overlay ? stage.bodies.map(({shift}, k) => [names[k], shift]) : []);
     layout.legend.showNames('recordings', compares && overlay ? names.map((name, k) => [name, stage.colours[k]]) : []);
   }
 
   // What is shown
 
   #toolInHand() {
-    if (!this.ready || !this.session.live) return null;
+    if (!this.ready || !this.session.live || !['simulate', 'edit'].includes(this.mode)) return null;
     if (this.mode === 'edit' && this.tools.move.aimed) return void (this.stage.controls.enabled = false);
     return this.tools[this.options.tool] ?? null;
   }

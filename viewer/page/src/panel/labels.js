@@ -7,16 +7,16 @@ export class Labels {
     this.shown = [];
   }
 
-  /** @param {[string, number[]][]} labels  names and points in space */
+  /** @param {[string, import('three').Vector3][]} labels  names, and by how much what they name is shifted */
   show(labels) {
-    this.shown = labels.map(([name, point]) => ({point, label: element('span', {class: 'label'}, name)}));
+    this.shown = labels.map(([name, shift]) => ({shift, label: element('span', {class: 'label'}, name)}));
     this.element.replaceChildren(...this.shown.map(({label}) => label));
   }
 
   /** Follows the camera. @param {import('../render/stage.js').Stage} stage */
   place(stage) {
-    for (const {point, label} of this.shown) {
-      const {x, y} = stage.project(point);
+    for (const {shift, label} of this.shown) {
+      const {x, y} = stage.project(stage.under(shift));
       label.style.translate = `calc(${x.toFixed(1)}px - 50%) ${(y + 24).toFixed(1)}px`;
     }
   }

@@ -194,8 +194,8 @@ export class Panel {
   #export() {
     const save = (kind, label, title) => button(label, () => this.app.save(kind), {title});
     const row = buttons(save('obj', 'OBJ', 'The shape as it is now'), save('ply', 'PLY', 'The shape as it is now'),
-      save('png', 'PNG', 'The picture as it is now (s)'), save('glb', 'glTF', 'The recording, or the last seconds, as an animation'),
-      save('html', 'Page', 'The recording, or the last seconds, as one HTML file that needs no server'));
+      save('png', 'PNG', 'The picture as it is now (s)'), inModes('simulate edit modes', save('glb', 'glTF', 'What was recorded, or the last seconds, as an animation')),
+      inModes('simulate edit modes', save('html', 'Page', 'What was recorded, or the last seconds, as one HTML file that needs no server')));
     row.classList.add('exports');
     return section('Export', row);
   }

@@ -93,15 +93,13 @@ export class Stage {
       this.reference = this.#add(shape);
       this.setTheme(this.themeName);
     }
-    this.shapeChanged();
+    this.#rearranged();
   }
 
   /** Draws the reference as a ghost in the object's place, or at its right. */
   set overlay(on) {
     this.overlaid = on;
     this.frame();
-    this.sky.restart();
-    this.shapeChanged();
   }
 
   /** All that is drawn of the model. */
@@ -288,10 +286,16 @@ export class Stage {
     reference.ghost = overlaid;
     reference.caster.visible = !overlaid;
     reference.shift.set(0, 0, 0);
+    this.#rearranged();
     if (overlaid) return;
     const {low, high, diagonal} = this.shape.model.about, right = this.#right().toArray();
     const axis = [0, 1, 2].reduce((a, b) => (Math.abs(right[b]) > Math.abs(right[a]) ? b : a));
     reference.shift.setComponent(axis, Math.sign(right[axis]) * (high[axis] - low[axis] + GAP * diagonal));
+  }
+
+  #rearranged() {
+    this.sky.restart();
+    this.shapeChanged();
   }
 
   /** A ball around all shapes, the radius of one, and the largest displacement. */
