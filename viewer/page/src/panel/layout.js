@@ -111,11 +111,11 @@ export class Layout {
     this.clearPanel();
   }
 
-  /** Tells the stage how much of it the panel covers at the right. */
+  /** Tells the stage how much of it the panel covers. */
   clearPanel() {
     const panel = this.panel.element.getBoundingClientRect(), whole = this.root.getBoundingClientRect();
-    const beside = panel.width > 0 && panel.left > 0.4 * whole.width;
-    this.app.stage?.setInset(beside ? whole.right - panel.left : 0);
+    const shown = panel.width > 0, beside = panel.left > 0.4 * whole.width;
+    this.app.stage?.setInset(shown && beside ? whole.right - panel.left : 0, shown && !beside ? whole.bottom - panel.top : 0);
   }
 
   showFrame(frame) {

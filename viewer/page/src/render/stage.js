@@ -48,7 +48,7 @@ export class Stage {
     this.themeName = 'light';
     this.ball = {centre: [0, 0, 0], radius: 1};
     this.unsettled = 0;
-    this.inset = 0;  // pixels at the right that a panel covers
+    this.inset = {right: 0, bottom: 0};  // pixels that a panel covers
     new ResizeObserver(() => this.#resize()).observe(parent);
     this.#resize();
   }
@@ -154,8 +154,8 @@ export class Stage {
       : front.multiplyScalar(Math.cos(rad(AZIMUTH))).addScaledVector(right, Math.sin(rad(AZIMUTH)))
           .multiplyScalar(Math.cos(rad(ELEVATION))).addScaledVector(this.up, Math.sin(rad(ELEVATION)));
     this.framed = true;
-    const aspect = (this.parent.clientWidth - this.inset) / this.parent.clientHeight;
-    const distance = Math.max(height, radius / aspect) / Math.sin(rad(FIELD_OF_VIEW / 2));
+    const {clientWidth: across, clientHeight: along} = this.parent, {right: covered, bottom} = this.inset;
+    const distance = Math.max(height / (along - bottom), radius / (across - covered)) * along / Math.sin(rad(FIELD_OF_VIEW / 2));
     this.controls.target.copy(centreOfView);
     this.camera.position.copy(centreOfView).addScaledVector(away, distance);
     this.controls.minDistance = 0.02 * radius;
@@ -164,10 +164,10 @@ export class Stage {
     this.invalidate();
   }
 
-  /** Keeps the object's middle clear of what covers so many pixels at the right. */
-  setInset(right) {
-    if (right === this.inset) return;
-    this.inset = right;
+  /** Keeps the object's middle clear of what covers so many pixels at the right and at the bottom. */
+  setInset(right, bottom) {
+    if (right === this.inset.right && bottom === this.inset.bottom) return;
+    this.inset = {right, bottom};
     this.#resize();
   }
 
@@ -357,7 +357,7 @@ export class Stage {
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
-    this.camera.setViewOffset(width, height, this.inset / 2, 0, width, height);
+    this.camera.setViewOffset(width, height, this.inset.right / 2, this.inset.bottom / 2, width, height);
     if (!this.body) return;
     this.#draw(performance.now());  // or the canvas would be blank until the next picture
     this.invalidate();
