@@ -199,7 +199,7 @@ test('beside the object a drag turns the view, and f brings it back', async () =
 
 test('colours, ghost, wireframe and theme change what is seen', async () => {
   await page.evaluate(() => {
-    supple.ask({do: 'set', gravity: [0, -9, 0]});
+    supple.ask({do: 'set', gravity: [0, -2, 0]});
     supple.ask({do: 'step', count: 40});
   });
   await until(() => supple.frame.steps === 40);
