@@ -212,7 +212,7 @@ const NORMALS = `
 
   void main() {
     ivec2 vertex = ivec2(gl_FragCoord.xy);
-    vec3 at = texelFetch(positions, vertex, 0).xyz, from = texelFetch(rest, vertex, 0).xyz, sum = vec3(0);
+    vec3 at = texelFetch(positions, vertex, 0).xyz, from = strained ? texelFetch(rest, vertex, 0).xyz : vec3(0), sum = vec3(0);
     uvec2 range = texelFetch(rings, vertex, 0).xy;
     mat3 twice_e = mat3(0);
     float area = 0.0;
