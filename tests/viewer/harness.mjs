@@ -1,6 +1,8 @@
-import {spawn} from 'node:child_process';
+import {execFile, spawn} from 'node:child_process';
 import {once} from 'node:events';
+import {join} from 'node:path';
 import {createInterface} from 'node:readline';
+import {promisify} from 'node:util';
 import {chromium} from 'playwright-core';
 
 const STARTS_WITHIN = 60_000, ENDS_WITHIN = 3_000;  // milliseconds
@@ -13,13 +15,26 @@ const running = new Set();
 process.on('exit', () => running.forEach((child) => child.kill('SIGKILL')));
 for (const signal of ['SIGINT', 'SIGTERM']) process.on(signal, () => process.exit(1));
 
+/** What a command says, such as run('simulate', model, '-o', folder). */
+export async function run(...args) {
+  return (await promisify(execFile)(command, args)).stdout;
+}
+
+/** What SUPPLE_MODEL names, or the bar as a model in a folder. */
+export async function modelFile(folder) {
+  if (process.env.SUPPLE_MODEL) return process.env.SUPPLE_MODEL;
+  const file = join(folder, 'bar.supple');
+  await run('reduce', ...NO_MODEL, '-o', file);
+  return file;
+}
+
 /**
- * Starts `supple view` on what SUPPLE_MODEL names, or on a bar.
+ * Starts `supple view` on what SUPPLE_MODEL names, or on a bar. `options` are more of the command's.
  * @returns {Promise<{url: string, port: number, stop: () => Promise<number>}>}  `stop`: milliseconds that it took to end
  */
-export async function startServer({port = 0, model = process.env.SUPPLE_MODEL ? [process.env.SUPPLE_MODEL] : NO_MODEL} = {}) {
+export async function startServer({port = 0, model = process.env.SUPPLE_MODEL ? [process.env.SUPPLE_MODEL] : NO_MODEL, options = []} = {}) {
   const page = process.env.SUPPLE_PAGE ? ['--page', process.env.SUPPLE_PAGE] : [];
-  const child = spawn(command, ['view', ...model, '--port', String(port), ...page], {stdio: ['ignore', 'pipe', 'pipe']});
+  const child = spawn(command, ['view', ...model, '--port', String(port), ...page, ...options], {stdio: ['ignore', 'pipe', 'pipe']});
   running.add(child);
   let errors = '';
   child.stderr.on('data', (text) => (errors += text));
@@ -71,4 +86,24 @@ export async function openPage(browser, url, options = {}) {
 /** Waits until the last picture is as good as it gets. */
 export function settled(page) {
   return page.waitForFunction(() => window.supple.settled, null, {timeout: 120_000});
+}
+
+/** Waits until something holds in a page. */
+export function until(page, holds, argument, timeout = 15_000) {
+  return page.waitForFunction(holds, argument, {timeout});
+}
+
+/** A node at the far end of the object that is seen and free: where it can be taken. */
+export function freeNode(page) {
+  return page.evaluate(() => {
+    const {about} = supple, axis = [0, 1, 2].reduce((a, b) => (about.high[b] - about.low[b] > about.high[a] - about.low[a] ? b : a));
+    const far = Array.from({length: about.surface_nodes}, (_, v) => v).sort((a, b) => supple.position(b)[axis] - supple.position(a)[axis]);
+    const around = [[0, 0], [5, 0], [-5, 0], [0, 5], [0, -5]];  // pixels: no node on the outline
+    for (const v of far) {
+      const {x, y} = supple.project(v);
+      if (document.elementFromPoint(x, y)?.tagName !== 'CANVAS') continue;
+      if (around.every(([h, k]) => supple.pick(x + h, y + k)) && supple.pick(x, y).node === v) return v;
+    }
+    return null;
+  });
 }

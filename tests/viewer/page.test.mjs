@@ -3,6 +3,7 @@ import {mkdtemp, readFile, rm} from 'node:fs/promises';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, beforeEach, test} from 'node:test';
+import * as harness from './harness.mjs';
 import {launchBrowser, openPage, settled, startServer} from './harness.mjs';
 
 let server, browser, page, folder;
@@ -34,22 +35,10 @@ beforeEach(async () => {
   await until(() => supple.frame.steps === 0 || supple.frame.time === 0);
 });
 
-/** Waits until something holds in the page. */
-const until = (holds, argument, of = page, timeout = 15_000) => of.waitForFunction(holds, argument, {timeout});
+const until = (holds, argument, of = page, timeout) => harness.until(of, holds, argument, timeout);
 const noErrors = () => assert.deepEqual(page.errors, []);
 
-/** A node at the far end of the object that is seen and free: where it can be taken. */
-const freeNode = () => page.evaluate(() => {
-  const {about} = supple, axis = [0, 1, 2].reduce((a, b) => (about.high[b] - about.low[b] > about.high[a] - about.low[a] ? b : a));
-  const far = Array.from({length: about.surface_nodes}, (_, v) => v).sort((a, b) => supple.position(b)[axis] - supple.position(a)[axis]);
-  const around = [[0, 0], [5, 0], [-5, 0], [0, 5], [0, -5]];  // pixels: no node on the outline
-  for (const v of far) {
-    const {x, y} = supple.project(v);
-    if (document.elementFromPoint(x, y)?.tagName !== 'CANVAS') continue;
-    if (around.every(([h, k]) => supple.pick(x + h, y + k)) && supple.pick(x, y).node === v) return v;
-  }
-  return null;
-});
+const freeNode = () => harness.freeNode(page);
 
 /** Nodes at one end of the longest axis: 0 the low one, 1 the high one. */
 const endNodes = (end) => page.evaluate((high) => {
@@ -83,6 +72,7 @@ test('the page shows the object on its ground', async () => {
   assert.ok(on[2] > on[0] + 15, `the object is blue, not ${on}`);
   assert.ok(Math.max(...off.slice(0, 3)) - Math.min(...off.slice(0, 3)) < 12 && off[0] > 200, `the background is light, not ${off}`);
   assert.equal(await page.textContent('h1'), await page.evaluate(() => supple.about.name));
+  assert.equal(await page.getByRole('button', {name: 'Replay'}).count(), 0, 'there is no recording');
   noErrors();
 });
 
@@ -101,7 +91,7 @@ test('it plays, pauses, steps and goes back to rest', async () => {
   noErrors();
 });
 
-test('positions on the graphics card agree with the processor’s to 1e-5 of the object', async (t) => {
+test('positions on the graphics card agree with the processor’s to 1e-5 of the object, and strains', async (t) => {
   await page.evaluate(() => {
     supple.ask({do: 'set', gravity: [1, -6, 3]});
     supple.ask({do: 'step', count: 60});
@@ -114,6 +104,10 @@ test('positions on the graphics card agree with the processor’s to 1e-5 of the
   assert.ok(gpu, 'the graphics card deforms');
   assert.ok(moved > 0, 'something has moved');
   assert.ok(disagreement < 1e-5, `they are ${disagreement} apart`);
+  await page.evaluate(() => supple.set({colours: 'strain'}));
+  const strains = await page.evaluate(() => ({apart: supple.strainDisagreement(), most: supple.app.stage.shape.strains().reduce((m, s) => Math.max(m, Math.abs(s)), 0)}));
+  assert.ok(strains.most > 1e-3 && strains.apart < 1e-3 * strains.most + 1e-5, `strains ${JSON.stringify(strains)}`);
+  assert.match(await page.textContent('.legend'), /strain.*%/);
   t.diagnostic(`GPU and CPU are ${disagreement.toExponential(1)} of the diagonal apart`);
   noErrors();
 });
@@ -165,6 +159,10 @@ test('a dragged point comes to where it is pulled, and is let go', async () => {
   assert.ok(ball[0] > 180 && ball[2] < 120, `an orange ball is at the target, not ${ball}`);
   await page.mouse.up();
   await until(() => supple.state.pulls.length === 0);
+  assert.equal(await page.locator('.hint').count(), 0, 'who has pulled needs no hint');
+  await page.reload();
+  await until(() => window.supple?.ready);
+  assert.equal(await page.locator('.hint').count(), 0, 'nor in the next visit');
   noErrors();
 });
 
@@ -201,7 +199,7 @@ test('beside the object a drag turns the view, and f brings it back', async () =
 
 test('colours, ghost, wireframe and theme change what is seen', async () => {
   await page.evaluate(() => {
-    supple.ask({do: 'set', gravity: [0, -9, 0]});
+    supple.ask({do: 'set', gravity: [0, -2, 0]});
     supple.ask({do: 'step', count: 40});
   });
   await until(() => supple.frame.steps === 40);
@@ -303,6 +301,7 @@ test('two handles edit the shape; undo, redo, save, reload and load', async () =
   for (const name of await page.evaluate(() => supple.state.handles.map((h) => h.name)))
     await page.getByRole('button', {name: `Remove ${name}`}).click();
   await until(() => supple.state.handles.length === 0);
+  assert.ok(await page.getByRole('button', {name: 'Save'}).isDisabled(), 'there is nothing to save');
   await page.setInputFiles('input[type=file]', path);
   await until(() => supple.state.handles.length === 2);
   assert.deepEqual((await page.evaluate(() => supple.state.handles.map((h) => h.nodes.length))), [near.length, far.length]);
@@ -324,6 +323,8 @@ test('a mode of vibration plays', async (t) => {
   }
   const diagonal = await page.evaluate(() => supple.about.diagonal);
   assert.ok(places.some((place) => distance(place, places[0]) > 1e-3 * diagonal));
+  await page.getByRole('button', {name: 'Pause'}).click();
+  await until(() => !supple.state.playing);
   noErrors();
 });
 
@@ -403,12 +404,38 @@ test('the page finds a server again that was started anew, and keeps its camera'
   noErrors();
 });
 
-test('on a narrow screen with touch everything is within reach', async () => {
-  const small = await openPage(browser, server.url, {viewport: {width: 390, height: 780}, hasTouch: true});
-  await small.evaluate(() => document.querySelector('.toasts').replaceChildren());
-  for (const name of ['Play', 'Reset', 'Edit', 'Show the whole object', 'Keys'])
-    await small.getByRole('button', {name, exact: true}).click({trial: true});
-  await small.setViewportSize({width: 800, height: 400});
-  await until(() => document.querySelector('canvas').clientWidth === 800, undefined, small);
+test('in no window is anything out of reach or in the way', async () => {
+  const small = await openPage(browser, server.url, {hasTouch: true});
+  for (const [width, height] of [[390, 780], [800, 500], [1100, 700]]) {
+    await small.setViewportSize({width, height});
+    await small.evaluate(() => {
+      document.querySelector('.toasts').replaceChildren();
+      supple.set({panels: true, colours: 'strain', components: true});
+    });
+    for (const mode of ['modes', 'edit', 'simulate']) {
+      await small.evaluate((name) => (supple.ask({do: 'mode', mode: name}), name !== 'edit' && supple.ask({do: 'pause'})), mode);
+      await until((name) => supple.state.mode === name && !supple.state.playing, mode, small);
+      const wrong = await small.evaluate(() => {
+        const boxes = ['header h1', '.modes', '.corner', '.tools', '.panel', '.bottom > .plots', '.transport', '.legend', '.triad', '.hint']
+          .map((name) => ({name, box: document.querySelector(name)?.getBoundingClientRect()})).filter(({box}) => box?.width);
+        const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 1;
+        const covered = [...document.querySelectorAll('#app button')].filter((button) => {
+          if (button.getClientRects().length === 0) return false;
+          button.scrollIntoView({block: 'nearest'});
+          const {left, top, width, height} = button.getBoundingClientRect();
+          return !button.contains(document.elementFromPoint(left + width / 2, top + height / 2));
+        });
+        return [
+          ...boxes.flatMap(({name, box}, k) => [
+            ...(box.left < 0 || box.top < 0 || box.right > innerWidth || box.bottom > innerHeight ? [`${name} is outside`] : []),
+            ...boxes.slice(k + 1).filter((other) => meet(box, other.box)).map((other) => `${name} meets ${other.name}`),
+          ]),
+          ...covered.map((button) => `${button.textContent || button.title} cannot be pressed`),
+        ];
+      });
+      assert.deepEqual(wrong, [], `${width} × ${height}, ${mode}`);
+    }
+  }
+  assert.deepEqual(small.errors, []);
   await small.context().close();
 });

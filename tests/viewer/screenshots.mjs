@@ -2,9 +2,11 @@
  * Makes the pictures of the page in docs/images again:
  *   SUPPLE_COMMAND=build/release/app/supple node screenshots.mjs SOLID.supple SHELL.supple [OUT]
  */
+import {mkdtemp, rm} from 'node:fs/promises';
+import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {fileURLToPath} from 'node:url';
-import {launchBrowser, openPage, settled, startServer} from './harness.mjs';
+import {launchBrowser, openPage, run, settled, startServer} from './harness.mjs';
 
 const [solid, shell, out = fileURLToPath(new URL('../../docs/images', import.meta.url))] = process.argv.slice(2);
 if (!shell) throw new Error('expected a solid model and a shell model');
@@ -18,12 +20,13 @@ try {
     await modes(page);
   });
   await withSession(shell, edited);
+  await compared();
 } finally {
   await browser.close();
 }
 
-async function withSession(model, act) {
-  const server = await startServer({model: [model]});
+async function withSession(model, act, options = []) {
+  const server = await startServer({model: [model], options});
   try {
     await act(await openPage(browser, server.url, {viewport: SIZE}));
   } finally {
@@ -33,17 +36,13 @@ async function withSession(model, act) {
 
 /** Waits for a picture at rest, without notes over it. */
 async function shoot(page, name) {
-  await page.evaluate(() => document.querySelector('.toasts').replaceChildren());
+  await page.evaluate(() => {
+    document.querySelector('.toasts').replaceChildren();
+    supple.app.layout.hint.dismiss();
+  });
   await settled(page);
   await page.waitForTimeout(300);
-  // Four points a pixel: what draws here has no smooth edges of its own.
-  const points = (ratio) => page.evaluate((r) => {
-    supple.app.stage.renderer.setPixelRatio(r);
-    supple.app.stage.drawNow();
-  }, ratio);
-  await points(2);
   await page.screenshot({path: join(out, `view-${name}.png`)});
-  await points(1);
 }
 
 /** The free node that is farthest along a direction and seen. */
@@ -127,4 +126,33 @@ async function edited(page) {
   await page.waitForTimeout(4000);
   await page.evaluate(() => supple.set({gizmo: 'rotate'}));
   await shoot(page, 'edit');
+}
+
+/** The full object swings beside the reduced one. */
+async function compared() {
+  const folder = await mkdtemp(join(tmpdir(), 'supple-pictures-')), [reduced, full] = ['reduced', 'full'].map((name) => join(folder, name));
+  const motion = ['--time', '1', '--frames', 'none'];
+  await run('simulate', solid, ...motion, '-o', reduced);
+  await run('simulate', solid, '--full', ...motion, '-o', full);
+  await withSession(solid, async (page) => {
+    await page.waitForFunction(() => supple.compares);
+    await page.evaluate(() => {
+      const {begin, duration, frames} = supple.about.recording;
+      supple.ask({do: 'pause'});
+      supple.set({colours: 'error'});
+      window.moments = Array.from({length: frames}, (_, k) => begin + duration * k / (frames - 1));
+    });
+    // Every moment once, for the curve; then the one where they are farthest apart.
+    let most = [0, 0];
+    for (const time of await page.evaluate(() => moments)) {
+      await page.evaluate((t) => supple.ask({do: 'seek', time: t}), time);
+      await page.waitForFunction((t) => Math.abs(supple.frame.time - t) < 1e-6, time);
+      const apart = await page.evaluate(() => supple.frame.values.reduce((sum, u, i) => sum + (u - supple.frame.reference[i]) ** 2, 0));
+      if (apart > most[0]) most = [apart, time];
+    }
+    await page.evaluate((t) => supple.ask({do: 'seek', time: t}), most[1]);
+    await page.waitForFunction((t) => Math.abs(supple.frame.time - t) < 1e-6, most[1]);
+    await shoot(page, 'replay');
+  }, ['--replay', reduced, '--beside', full]);
+  await rm(folder, {recursive: true, force: true});
 }

@@ -15,9 +15,9 @@ import {PullTool} from './tools/pull_tool.js';
 import {BoxTool, BrushTool} from './tools/select_tools.js';
 
 const DEFAULTS = {
-  tool: 'pull', colours: 'plain', stretchRange: 0.25, wireframe: false, components: false, regions: true,
+  tool: 'pull', colours: 'plain', strainRange: 0.25, wireframe: false, components: false, regions: true, overlay: false,
   pullStiffness: 1, brush: 0.05, gizmo: 'translate', amplitude: 0.1, stream: 'coordinates', theme: 'auto',
-  panels: window.innerWidth > 860,
+  panels: window.innerWidth > 720,
 };
 
 /** The page: it joins a session to the stage, the tools and the panel. What the session says is the truth. */
@@ -47,12 +47,26 @@ export class App {
     return this.state?.mode ?? 'simulate';
   }
 
+  /** Whether two recordings are shown. */
+  get compares() {
+    return Boolean(this.stage.reference);
+  }
+
+  /** What colours may say at this moment. */
+  get colours() {
+    return ['plain', 'displacement', 'strain', ...(this.compares ? ['error'] : [])];
+  }
+
   // What the person at the page wants
 
   setOptions(options) {
     Object.assign(this.options, options);
     if ('theme' in options) this.#applyTheme();
     if ('stream' in options) this.session.choose(options.stream);
+    if ('overlay' in options && this.compares) {
+      this.stage.overlay = options.overlay;
+      this.#nameRecordings();
+    }
     if ('gizmo' in options) this.tools.move.way = options.gizmo;
     this.#applyOptions();
   }
@@ -65,6 +79,7 @@ export class App {
   }
 
   release() {
+    if (this.ownPull) this.layout.hint.dismiss();
     this.ownPull = null;
     this.session.ask({do: 'release'});
     this.#showPulls();
@@ -175,10 +190,11 @@ export class App {
     for (const thing of [this.springs?.group, this.components?.mesh]) if (thing) this.stage.scene.remove(thing);
     const shape = new Shape(model);
     this.stage.setShape(shape, {keepCamera: similar});
+    this.#nameRecordings();
     this.springs = new Springs(shape);
     this.components = new Components(this.stage.body, model);
     this.stage.scene.add(this.springs.group, this.components.mesh);
-    this.displacementRange = 1e-3 * model.about.diagonal;
+    this.displacementRange = this.errorRange = 1e-4 * model.about.diagonal;
     this.layout.setModel(model, this.session);
     if (!this.stage.deformer.computes) this.setOptions({stream: 'positions'});
     for (const text of model.about.notes ?? []) this.layout.toasts.say(text);
@@ -193,7 +209,7 @@ export class App {
     const before = this.state;
     this.state = state;
     if (state.mode !== before?.mode) {
-      this.setOptions({tool: {simulate: 'pull', edit: state.handles.length ? 'move' : 'brush', modes: null}[state.mode]});
+      this.setOptions({tool: {simulate: 'pull', edit: state.handles.length ? 'move' : 'brush'}[state.mode] ?? null});
       if (state.mode === 'modes' && this.model?.about.frequencies.length) this.showMode(this.shownMode ?? 0);
     }
     if (this.wantsHandle) {
@@ -206,29 +222,53 @@ export class App {
   #takeFrame(frame) {
     this.frame = frame;
     if (!this.ready) return;
-    if (frame.kind === 'coordinates' && frame.values.length !== this.model.about.dimension) return;
+    const {dimension, surface_nodes} = this.model.about;
+    if (frame.values.length !== (frame.kind === 'coordinates' ? dimension : 3 * surface_nodes)) return;
     this.stage.shape.take(frame);
-    this.layout.plots.take(frame);
+    const reference = frame.reference && {kind: 'positions', values: frame.reference};
+    if (Boolean(reference) !== this.compares) this.#compare(reference);
+    else if (reference) this.stage.reference.shape.take(reference);
+    this.layout.plots.take(frame, this.mode);
     this.layout.showFrame(frame);
     this.fresh = frame;
     if (frame.kind === 'coordinates') this.recorder.take(frame.values, performance.now() / 1000);
     this.stage.shapeChanged();
   }
 
+  /** Begins or ends to show a second recording. */
+  #compare(reference) {
+    const shape = reference && new Shape(this.model, this.stage.shape);
+    shape?.take(reference);
+    this.stage.setReference(shape);
+    if (!this.colours.includes(this.options.colours)) this.options.colours = 'plain';
+    this.stage.overlay = this.options.overlay;
+    this.#nameRecordings();
+    this.#applyOptions();
+  }
+
+  /** Under the objects where these are side by side, else by their colours. */
+  #nameRecordings() {
+    const {compares, layout, stage, options: {overlay}} = this, {names} = this.model.about.recording ?? {};
+    layout.labels.show(compares && !overlay ? stage.bodies.map(({shift}, k) => [names[k], shift]) : []);
+    layout.legend.showNames('recordings', compares && overlay ? names.map((name, k) => [name, stage.colours[k]]) : []);
+  }
+
   // What is shown
 
   #toolInHand() {
-    if (!this.ready || !this.session.live) return null;
+    if (!this.ready || !this.session.live || !['simulate', 'edit'].includes(this.mode)) return null;
     if (this.mode === 'edit' && this.tools.move.aimed) return void (this.stage.controls.enabled = false);
     return this.tools[this.options.tool] ?? null;
   }
 
   #beforeDrawing() {
     this.springs?.update();
-    if (this.options.colours !== 'displacement') return;
-    const {displacement} = this.stage.extent ?? {displacement: 0};
+    const {stage} = this, {displacement} = stage.extent ?? {displacement: 0};
     // The scale grows at once and shrinks slowly, so that colours do not flicker.
-    this.displacementRange = Math.max(displacement, 0.995 * this.displacementRange, 1e-4 * this.model.about.diagonal);
+    const range = (before, now) => Math.max(now, 0.998 * before, 1e-4 * this.model.about.diagonal);
+    if (this.options.colours === 'displacement') this.displacementRange = range(this.displacementRange, displacement);
+    else if (this.options.colours === 'error') this.errorRange = range(this.errorRange, stage.shape.distance(stage.reference.shape));
+    else return;
     this.#applyColours();
   }
 
@@ -236,6 +276,8 @@ export class App {
     if (this.fresh) this.session.drawn(this.fresh);
     this.fresh = null;
     this.layout.plots.tick(time);
+    this.layout.triad.turn(this.stage.camera);
+    this.layout.labels.place(this.stage);
   }
 
   #applyOptions() {
@@ -243,11 +285,12 @@ export class App {
     this.layout.panel.showOptions(options);
     this.layout.showOptions(options);
     if (!this.ready) return;
-    stage.body.ghost = options.components;
-    stage.body.wireframe = options.wireframe;
-    this.components.mesh.visible = options.components;
+    const components = options.components && !this.compares;
+    stage.body.ghost = components;
+    for (const body of stage.bodies) body.wireframe = options.wireframe;
+    this.components.mesh.visible = components;
     const {low, high} = this.components.range;
-    this.layout.legend.show('weights', options.components
+    this.layout.legend.show('weights', components
       ? {title: 'weight of a component', map: 'sequential', labels: [low, high].map((w) => w.toPrecision(3))} : null);
     stage.canvas.style.cursor = {pull: 'grab', brush: 'crosshair', box: 'crosshair'}[options.tool] ?? '';
     this.#applyColours();
@@ -257,13 +300,16 @@ export class App {
   }
 
   #applyColours() {
-    const {colours, stretchRange} = this.options, {body} = this.stage;
-    const range = colours === 'displacement' ? this.displacementRange : stretchRange;
+    const {colours, strainRange, overlay} = this.options, {body, reference} = this.stage;
+    const range = {displacement: this.displacementRange, error: this.errorRange}[colours] ?? strainRange;
     body.show(colours, range);
+    reference?.show(overlay ? 'plain' : colours, range);
+    const lengths = {map: 'sequential', labels: ['0', quantity(range / 2, 'm'), quantity(range, 'm')]};
     this.layout.legend.show('colours', {
       plain: null,
-      displacement: {title: 'displacement', map: 'sequential', labels: ['0', quantity(range / 2, 'm'), quantity(range, 'm')]},
-      stretch: {title: 'stretch of the surface', map: 'diverging', labels: [`−${100 * range} %`, '0', `+${100 * range} %`]},
+      displacement: {title: 'displacement', ...lengths},
+      error: {title: 'distance from each other', ...lengths},
+      strain: {title: 'strain of the surface', map: 'diverging', labels: [`−${100 * range} %`, '0', `+${100 * range} %`]},
     }[colours]);
   }
 
@@ -283,14 +329,18 @@ export class App {
     if (!this.ready) return;
     const {held, fixed, selected, handles, anchors} = REGION_COLOURS, regions = [];
     const {state, options, model} = this;
+    const inPlace = this.mode === 'simulate' ? state?.fixed ?? [] : [];
     if (options.regions && state) {
-      regions.push([model.about.fixed, [...held, 90]], [state.fixed, [...fixed, 190]]);
+      regions.push([model.about.fixed, held], [inPlace, fixed]);
       if (state.mode === 'edit')
         for (const {id, nodes, movable} of state.handles)
-          regions.push([nodes, [...(movable ? handles[(id - 1) % handles.length] : anchors), 225]]);
+          regions.push([nodes, movable ? handles[(id - 1) % handles.length] : anchors]);
     }
-    regions.push([this.selection, [...selected, 235]]);
-    this.stage.body.paint(regions);
+    regions.push([this.selection, selected]);
+    for (const body of this.stage.bodies) body.paint(regions);
+    const named = [['held by the model', model.about.fixed, held], ['held in place', inPlace, fixed]];
+    this.layout.legend.showNames('regions', options.regions
+      ? named.filter(([, nodes]) => nodes.length > 0).map(([name, , colour]) => [name, `rgb(${colour.join(' ')})`]) : []);
     this.stage.invalidate();
   }
 
@@ -326,11 +376,11 @@ export class App {
 
   /** What a standalone page has to know to show what this one shows. */
   view() {
-    const {colours, stretchRange, wireframe, components, theme} = this.options;
+    const {colours, strainRange, wireframe, components, theme} = this.options;
     const {camera, controls} = this.stage;
     return {
       position: camera.position.toArray(), target: controls.target.toArray(),
-      options: {colours, stretchRange, wireframe, components, theme},
+      options: {colours, strainRange, wireframe, components, theme},
     };
   }
 }

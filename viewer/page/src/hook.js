@@ -6,6 +6,7 @@ export function exposeHook(app) {
     get settled() { return app.stage.settled; },
     get connected() { return session.connected; },
     get client() { return session.client; },
+    get compares() { return app.compares; },
     get state() { return app.state; },
     get frame() { return app.frame; },
     get about() { return app.model?.about; },
@@ -34,12 +35,19 @@ export function exposeHook(app) {
     /** Where a node is on the page. */
     project: (node) => app.stage.project(app.stage.shape.position(node)),
     position: (node) => [...app.stage.shape.position(node)],
+    referencePositions: () => Array.from(app.stage.reference.shape.positions()),
     positions: () => Array.from(app.stage.shape.positions()),
     /** Largest distance between positions on the graphics card and on the processor, over the object's diagonal. */
     disagreement() {
       app.stage.drawNow();
       const here = app.stage.shape.positions(), there = app.stage.deformer.readPositions();
       return here.reduce((worst, x, i) => Math.max(worst, Math.abs(x - there[i])), 0) / app.model.about.diagonal;
+    },
+    /** Largest difference between strains on the graphics card and on the processor. */
+    strainDisagreement() {
+      app.stage.drawNow();
+      const here = app.stage.shape.strains(), there = app.stage.deformer.readStrains();
+      return there.reduce((worst, strain, v) => Math.max(worst, Math.abs(strain - here[v])), 0);
     },
     /** Red, green, blue and alpha at a point of the page, each 0 … 255. */
     pixel(clientX, clientY) {

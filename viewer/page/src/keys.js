@@ -1,6 +1,5 @@
 const TOOLS = {p: 'pull', b: 'brush', x: 'box', m: 'move'};
-const MODES = {1: 'simulate', 2: 'edit', 3: 'modes'};
-const COLOURS = ['plain', 'displacement', 'stretch'];
+const MODES = {1: 'simulate', 2: 'edit', 3: 'modes', 4: 'replay'};
 
 /** Keys of the page. @param {import('./app.js').App} app */
 export function bindKeys(app) {
@@ -14,7 +13,8 @@ export function bindKeys(app) {
     w: () => flip('wireframe'),
     c: () => flip('components'),
     h: () => flip('panels'),
-    d: () => app.setOptions({colours: COLOURS[(COLOURS.indexOf(app.options.colours) + 1) % COLOURS.length]}),
+    d: () => app.setOptions({colours: app.colours[(app.colours.indexOf(app.options.colours) + 1) % app.colours.length]}),
+    o: () => app.compares && flip('overlay'),
     t: () => app.setOptions({theme: document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark'}),
     s: () => app.save('png'),
     '?': () => layout.toggleHelp(),
@@ -38,6 +38,6 @@ export function bindKeys(app) {
     const act = keys[key] ?? (session.live ? liveKeys[key] : undefined);
     if (act) event.preventDefault(), act();
     else if (session.live && key in TOOLS) app.setOptions({tool: TOOLS[key]});
-    else if (session.live && key in MODES) session.ask({do: 'mode', mode: MODES[key]});
+    else if (session.live && key in MODES && (key !== '4' || app.model.about.recording)) session.ask({do: 'mode', mode: MODES[key]});
   });
 }

@@ -25,13 +25,15 @@ test('a frame is read as the protocol lays it out', () => {
   assert.deepEqual({...frame, values: [...frame.values]}, {
     kind: 'coordinates', number: 17, time: 2.5, kinetic: 1, elastic: 2, potential: 3, drift: 4, residual: 0.5, iterations: 6,
     microseconds: 120, stepsPerSecond: 200, realTime: 0.25, estimate: NaN, playing: true, behind: false, unconverged: true,
-    untrained: false, steps: 99, values: [1.5, -2],
+    untrained: false, steps: 99, values: [1.5, -2], reference: null,
   });
   assert.equal(parseFrame(frameOf({kind: 2})).kind, 'positions');
+  const both = parseFrame(frameOf({kind: 3, values: [1, 2, 3, 4, 5, 6]}));
+  assert.deepEqual([both.kind, [...both.values], [...both.reference]], ['positions', [1, 2, 3], [4, 5, 6]]);
 });
 
 test('what is no frame is refused', () => {
   assert.throws(() => parseFrame(new ArrayBuffer(95)), /has no header/);
-  assert.throws(() => parseFrame(frameOf({kind: 3})), /unknown kind 3/);
+  assert.throws(() => parseFrame(frameOf({kind: 4})), /unknown kind 4/);
   assert.throws(() => parseFrame(frameOf({values: [1]}).slice(0, HEADER_BYTES)), /announces 1 numbers/);
 });

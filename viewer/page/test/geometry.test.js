@@ -2,11 +2,13 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {Matrix4, Quaternion, Vector3} from 'three';
 import {matrixOf, motionTo, placeOf, STILL} from '../src/geometry/motion.js';
+import {fansOf} from '../src/geometry/fans.js';
 import {intersect} from '../src/geometry/ray.js';
 import {boxed, brushed} from '../src/geometry/regions.js';
 import {edgesOf, ringsOf} from '../src/geometry/rings.js';
 import {Shape} from '../src/geometry/shape.js';
-import {positionsOf, randomNumbers, sheet} from './models.js';
+import {strainsOf} from '../src/geometry/strain.js';
+import {positionsOf, randomNumbers, sheet, tetrahedron} from './models.js';
 
 const near = (a, b, tolerance = 1e-12) => [...a].forEach((value, i) =>
   assert.ok(Math.abs(value - b[i]) <= tolerance, `${value} at ${i}, expected ${b[i]}`));
@@ -32,9 +34,44 @@ test('streamed positions replace the coordinates until these come again', () => 
   near(shape.positions(), model.rest);
 });
 
+test('shapes of one model share its surface and know their distance', () => {
+  const model = sheet(), shape = new Shape(model), other = new Shape(model, shape);
+  other.take({kind: 'positions', values: Float32Array.from({length: 3 * model.about.surface_nodes}, (_, i) => (i === 10 ? 0.5 : 0))});
+  near([shape.distance(other), other.distance(shape)], [0.5, 0.5]);
+  assert.equal(other.fans, shape.fans);
+});
+
 test('normals of a plane are normal to it', () => {
   const normals = new Shape(sheet()).normals();
   for (let v = 0; v < normals.length; v += 3) near(normals.subarray(v, v + 3), [0, 0, 1]);
+});
+
+test('sharp edges part the sides of a node, smooth ones do not', () => {
+  const parts = ({rest, triangles, about}) => fansOf(rest, triangles, ringsOf(triangles, about.nodes));
+  assert.equal(parts(sheet()).count, 24);
+  const {count, nodeOf, triangles, rings} = parts(tetrahedron());
+  assert.equal(count, 12, 'each corner has three sides');
+  assert.equal(new Set(triangles).size, 12);
+  assert.deepEqual([...triangles].map((vertex) => nodeOf[vertex]), [...tetrahedron().triangles]);
+  for (let vertex = 0; vertex < 12; ++vertex) {
+    assert.equal(rings.starts[vertex + 1] - rings.starts[vertex], 1);
+    assert.ok(rings.pairs[2 * rings.starts[vertex]] < 4, 'rings are of nodes');
+  }
+});
+
+test('a strain is how much longer or shorter the surface has become', () => {
+  const model = sheet(), {rest, triangles, about} = model, fans = fansOf(rest, triangles, ringsOf(triangles, about.nodes));
+  const turn = new Matrix4().makeRotationAxis(new Vector3(1, 2, 3).normalize(), 0.8);
+  const moved = (a, b, shear = 0) => Array.from({length: about.nodes}, (_, v) => {
+    const [x, y, z] = rest.slice(3 * v, 3 * v + 3);
+    return new Vector3(a * x + shear * y, b * y, z).applyMatrix4(turn).toArray();
+  }).flat();
+  const strained = (x, expected) => near(strainsOf(rest, x, fans), new Array(about.nodes).fill(expected), 1e-6);
+  strained(moved(1, 1), 0);
+  strained(moved(1.3, 0.9), 0.3);
+  strained(moved(1.1, 0.7), -0.3);
+  const shear = 0.4, long = Math.sqrt(1 + shear * shear / 2 + shear * Math.sqrt(1 + shear * shear / 4));
+  strained(moved(1, 1, shear), long - 1);
 });
 
 test('rings hold each corner once, and edges each pair once', () => {

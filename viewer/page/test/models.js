@@ -22,6 +22,15 @@ export function sheet({columns = 6, rows = 4, block = 3, fields = 5, seed = 1} =
   };
 }
 
+/** Four nodes and the four triangles between them, seen from outside. */
+export function tetrahedron() {
+  return {
+    about: {nodes: 4},
+    rest: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1),
+    triangles: Uint32Array.of(0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3),
+  };
+}
+
 /** Numbers in −1 … 1 that are the same in each run. */
 export function randomNumbers(seed) {
   let state = seed;

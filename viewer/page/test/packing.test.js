@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {packBasis, packCoordinates} from '../src/render/basis_packing.js';
-import {gridOf} from '../src/render/node_grid.js';
+import {gridOf} from '../src/render/vertex_grid.js';
 import {positionsOf, randomNumbers, sheet} from './models.js';
 
 /** What the shader does with a chunk, in double precision. */
@@ -19,7 +19,7 @@ for (const block of [1, 3])
     test(`packed fields give X + U q with block ${block} and at most ${layers} layers`, () => {
       const model = sheet({block, fields: 14}), grid = gridOf(model.about.nodes), random = randomNumbers(3);
       const q = Float32Array.from({length: model.about.dimension}, random), x = Float64Array.from(model.rest);
-      const chunks = [...packBasis(model, grid, {layers, bytes: 2 ** 28})];
+      const chunks = [...packBasis(model, model.nodes, grid, {layers, bytes: 2 ** 28})];
       assert.equal(chunks.length, parts);
       for (const chunk of chunks) {
         assert.ok(chunk.layers <= layers);

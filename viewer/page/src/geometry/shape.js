@@ -1,16 +1,22 @@
+import {fansOf} from './fans.js';
 import {ringsOf} from './rings.js';
+import {strainsOf} from './strain.js';
 
 /**
  * The shape at this moment on the processor: x = X + U q in double precision, computed when somebody asks. Picking,
  * regions and exports use it; drawing does not.
  */
 export class Shape {
-  /** @param {import('../session/model.js').Model} model */
-  constructor(model) {
+  /**
+   * @param {import('../session/model.js').Model} model
+   * @param {Shape} [like]   another shape of the model, whose surface it shares
+   */
+  constructor(model, like) {
     this.model = model;
     this.q = new Float64Array(model.about.dimension);
     this.displacements = null;  // of the surface's nodes, where a server streams positions
-    this.rings = ringsOf(model.triangles, model.about.nodes);
+    this.rings = like?.rings ?? ringsOf(model.triangles, model.about.nodes);
+    this.fans = like?.fans ?? fansOf(model.rest, model.triangles, this.rings);
     this.stale = true;
     this.cached = new Float64Array(3 * model.about.nodes);
     this.samples = evenSamples(model.about.surface_nodes, 400);
@@ -72,23 +78,37 @@ export class Shape {
     return {centre, radius: Math.hypot(...low.map((l, axis) => high[axis] - l)) / 2, displacement: Math.sqrt(displacement)};
   }
 
-  /** Normals weighted by area: 1 long where the surface is flat, shorter on a crease, 0 for nodes without a triangle. */
+  /** Largest distance of the same few hundred nodes from those of another shape of the model. */
+  distance(other) {
+    let squared = 0;
+    for (const node of this.samples) {
+      const x = this.position(node), y = other.position(node);
+      squared = Math.max(squared, (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2);
+    }
+    return Math.sqrt(squared);
+  }
+
+  /** Normals of the vertices that are drawn, weighted by area; 0 for those without a triangle. */
   normals() {
-    const x = this.positions(), {starts, pairs} = this.rings;
-    const normals = new Float32Array(x.length);
-    for (let v = 0; v + 1 < starts.length; ++v) {
-      let nx = 0, ny = 0, nz = 0, area = 0;
+    const x = this.positions(), {count, nodeOf, rings: {starts, pairs}} = this.fans;
+    const normals = new Float32Array(3 * count);
+    for (let v = 0; v < count; ++v) {
+      let nx = 0, ny = 0, nz = 0;
       for (let k = starts[v]; k < starts[v + 1]; ++k) {
-        const b = 3 * pairs[2 * k], c = 3 * pairs[2 * k + 1], a = 3 * v;
+        const b = 3 * pairs[2 * k], c = 3 * pairs[2 * k + 1], a = 3 * nodeOf[v];
         const bx = x[b] - x[a], by = x[b + 1] - x[a + 1], bz = x[b + 2] - x[a + 2];
         const cx = x[c] - x[a], cy = x[c + 1] - x[a + 1], cz = x[c + 2] - x[a + 2];
-        const tx = by * cz - bz * cy, ty = bz * cx - bx * cz, tz = bx * cy - by * cx;
-        nx += tx, ny += ty, nz += tz;
-        area += Math.hypot(tx, ty, tz);
+        nx += by * cz - bz * cy, ny += bz * cx - bx * cz, nz += bx * cy - by * cx;
       }
-      if (area > 0) normals[3 * v] = nx / area, normals[3 * v + 1] = ny / area, normals[3 * v + 2] = nz / area;
+      const length = Math.hypot(nx, ny, nz) || 1;
+      normals[3 * v] = nx / length, normals[3 * v + 1] = ny / length, normals[3 * v + 2] = nz / length;
     }
     return normals;
+  }
+
+  /** Strain of the surface at the vertices that are drawn. */
+  strains() {
+    return strainsOf(this.model.rest, this.positions(), this.fans);
   }
 
   #deform() {

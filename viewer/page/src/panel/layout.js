@@ -1,11 +1,16 @@
 import {count, percent, quantity} from './quantity.js';
 import {helpDialog} from './help.js';
+import {Hint} from './hint.js';
 import {ICONS} from './icons.js';
+import {Labels} from './labels.js';
 import {Legend} from './legend.js';
 import {Panel} from './panel.js';
 import {Plots} from './plots.js';
 import {Toasts} from './toasts.js';
-import {button, element, segments} from './widgets.js';
+import {Triad} from './triad.js';
+import {button, element, inModes, segments} from './widgets.js';
+
+const NARROW = 720, LOW = 480;  // pixels: smaller pages have their plots in the panel
 
 /** Where everything is on the page. */
 export class Layout {
@@ -16,6 +21,9 @@ export class Layout {
     const ask = (what) => () => app.session.ask({do: what});
     this.stage = element('main', {class: 'stage'});
     this.toasts = new Toasts();
+    this.hint = new Hint();
+    this.triad = new Triad();
+    this.labels = new Labels();
     this.plots = new Plots();
     this.legend = new Legend();
     this.legend.show('colours', null);
@@ -24,24 +32,29 @@ export class Layout {
 
     this.name = element('h1', {}, 'Supple');
     this.facts = element('p', {});
-    this.modes = segments('What is done with the object', [['simulate', 'Simulate', '1'], ['edit', 'Edit', '2'], ['modes', 'Modes', '3']],
+    this.modes = segments('What is done with the object', [['simulate', 'Simulate', '1'], ['edit', 'Edit', '2'], ['modes', 'Modes', '3'],
+      ['replay', 'Replay', '4']],
       (mode) => app.session.ask({do: 'mode', mode}));
     this.toolBar = segments('Tool', [
       ['pull', ICONS.pull, 'Pull (p)'], ['brush', ICONS.brush, 'Select with a brush (b)'],
       ['box', ICONS.box, 'Select with a box (x)'], ['move', ICONS.move, 'Move handles (m)'],
     ], (tool) => app.setOptions({tool}));
     this.toolBar.classList.add('tools');
+    inModes('simulate edit', this.toolBar);
+    for (const [tool, mode] of [['pull', 'simulate'], ['move', 'edit']]) inModes(mode, this.toolBar.querySelector(`[data-value=${tool}]`));
     this.play = button('Play', () => app.session.ask({do: app.state?.playing ? 'pause' : 'play'}),
       {icon: ICONS.play, title: 'Play or pause (Space)', kind: 'round main'});
     this.record = button('Record', () => this.#record(), {icon: ICONS.record, title: 'Record for .glb and .html', kind: 'round record'});
     this.clock = element('output', {class: 'clock', 'aria-label': 'Time of the session'});
     this.badge = element('span', {class: 'badge', hidden: true});
-    this.seek = element('input', {type: 'range', class: 'seek', min: 0, step: 'any', 'aria-label': 'Time', hidden: live,
+    this.seek = element('input', {type: 'range', class: 'seek', min: 0, step: 'any', 'aria-label': 'Time',
       oninput: () => app.session.ask({do: 'seek', time: this.seek.valueAsNumber})});
     this.transport = element('div', {class: 'transport card'},
-      button('Reset', ask('reset'), {icon: ICONS.reset, title: 'Back to rest (r)', kind: 'round'}), this.play,
-      button('Step', ask('step'), {icon: ICONS.step, title: 'One step (.)', kind: 'round step'}),
-      live ? this.record : this.seek, this.clock, this.badge);
+      inModes('simulate edit replay', button('Reset', ask('reset'), {icon: ICONS.reset, title: 'Back to the start (r)', kind: 'round'})),
+      inModes('simulate modes replay', this.play),
+      inModes('simulate replay', button('Step', ask('step'), {icon: ICONS.step, title: 'One step (.)', kind: 'round'})),
+      inModes('simulate edit modes', this.record), inModes('replay', this.seek), inModes('simulate replay', this.clock), this.badge);
+    inModes('simulate edit replay', this.plots.element);
     this.progress = element('div', {class: 'progress card'}, element('h2', {}, 'Waiting for the server'),
       element('progress', {max: 1}), element('p', {}, ''));
     this.connection = element('div', {class: 'connection', role: 'status', hidden: true}, 'The server is gone. Waiting for it to come back …');
@@ -54,11 +67,12 @@ export class Layout {
       button('Panels', () => app.setOptions({panels: !app.options.panels}), {icon: ICONS.panel, title: 'Hide or show panels (h)', kind: 'round'}));
     this.root = root;
     root.classList.add('waiting');
-    root.append(this.stage, element('header', {}, this.name, this.facts), ...(live ? [this.modes, this.toolBar] : []), corner,
-      this.panel.element, ...(live ? [this.plots.element] : []), this.legend.element, this.transport, this.connection,
-      this.toasts.element, this.help, this.progress);
+    this.bottom = element('div', {class: 'bottom'}, this.transport, this.legend.element);
+    const notices = element('div', {class: 'notices'}, this.connection, live && !this.hint.seen ? this.hint.element : null, this.toasts.element);
+    root.append(this.stage, this.labels.element, element('header', {}, this.name, this.facts), ...(live ? [this.modes, this.toolBar] : []), corner,
+      this.panel.element, this.bottom, this.triad.element, notices, this.help, this.progress);
     this.modes.classList.add('modes');
-    new ResizeObserver(() => this.clearPanel()).observe(root);
+    new ResizeObserver(() => this.#arrange()).observe(root);
   }
 
   setModel(model, session) {
@@ -72,12 +86,15 @@ export class Layout {
       `${about.dimension} unknowns · ${about.components} components${error}`);
     this.plots.setModel(model);
     this.panel.setModel(model);
-    if (!session.live) this.seek.max = session.duration;
+    const {begin, duration} = about.recording ?? {begin: 0, duration: session.duration};
+    this.seek.min = begin;
+    this.seek.max = this.end = begin + duration;
+    this.modes.querySelector('[data-value=replay]').hidden = !about.recording;
   }
 
   showState(state) {
     this.modes.show(state.mode);
-    this.root.dataset.mode = state.mode;
+    for (const part of this.root.querySelectorAll('[data-for]')) part.hidden = !part.dataset.for.split(' ').includes(state.mode);
     this.play.innerHTML = state.playing ? ICONS.pause : ICONS.play;
     this.play.setAttribute('aria-label', state.playing ? 'Pause' : 'Play');
   }
@@ -88,16 +105,24 @@ export class Layout {
     this.clearPanel();
   }
 
-  /** Tells the stage how much of it the panel covers at the right. */
+  #arrange() {
+    const {clientWidth: width, clientHeight: height} = this.root;
+    if (this.app.session.live) (width <= NARROW || height < LOW ? this.panel.element : this.bottom).append(this.plots.element);
+    this.clearPanel();
+  }
+
+  /** Tells the stage how much of it the panel covers. */
   clearPanel() {
     const panel = this.panel.element.getBoundingClientRect(), whole = this.root.getBoundingClientRect();
-    const beside = panel.width > 0 && panel.left > 0.4 * whole.width;
-    this.app.stage?.setInset(beside ? whole.right - panel.left : 0);
+    const shown = panel.width > 0, beside = panel.left > 0.4 * whole.width;
+    this.app.stage?.setInset(shown && beside ? whole.right - panel.left : 0, shown && !beside ? whole.bottom - panel.top : 0);
   }
 
   showFrame(frame) {
-    this.clock.textContent = `${frame.time.toFixed(2)} s`;
-    if (!this.seek.hidden && !this.seek.matches(':active')) this.seek.value = frame.time;
+    const replays = this.app.mode === 'replay';
+    this.clock.textContent = replays ? `${frame.time.toFixed(2)} / ${this.end.toFixed(2)} s` : `${frame.time.toFixed(2)} s`;
+    if (replays && !this.seek.matches(':active')) this.seek.value = frame.time;
+    this.seek.style.setProperty('--share', (this.seek.valueAsNumber - this.seek.min) / (this.seek.max - this.seek.min));
     const said = frame.unconverged ? ['bad', 'last step did not converge']
       : frame.behind ? ['slow', `${quantity(frame.realTime)} × real time`]
       : frame.untrained ? ['slow', 'beyond what was trained'] : null;

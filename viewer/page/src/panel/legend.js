@@ -1,11 +1,11 @@
 import {cssColour} from '../render/colour_maps.js';
 import {element} from './widgets.js';
 
-/** What colours mean, with numbers and units. */
+/** What colours mean: bars with numbers and units, and what is painted. */
 export class Legend {
   constructor() {
     this.element = element('div', {class: 'legend', role: 'img'});
-    this.bars = new Map();
+    this.entries = new Map();
   }
 
   /**
@@ -14,19 +14,31 @@ export class Legend {
    * @param {{title: string, map: string, labels: string[]}|null} scale  labels from low to high
    */
   show(key, scale) {
-    const said = JSON.stringify(scale);
-    if (this.bars.get(key)?.said === said) return;
-    this.bars.get(key)?.element.remove();
-    this.bars.delete(key);
-    if (scale) {
-      const stops = Array.from({length: 17}, (_, k) => cssColour(scale.map, k / 16));
-      const bar = element('figure', {class: 'bar'}, element('figcaption', {}, scale.title),
+    this.#put(key, scale, ({title, map, labels}) => {
+      const stops = Array.from({length: 17}, (_, k) => cssColour(map, k / 16));
+      return element('figure', {class: 'bar'}, element('figcaption', {}, title),
         element('i', {style: `background: linear-gradient(to right, ${stops.join(', ')})`}),
-        element('div', {}, ...scale.labels.map((label) => element('span', {}, label))));
-      this.element.append(bar);
-      this.bars.set(key, {said, element: bar});
+        element('div', {}, ...labels.map((label) => element('span', {}, label))));
+    });
+  }
+
+  /** Says what has a colour of its own. @param {string} key  @param {[string, string][]} names  each with its colour */
+  showNames(key, names) {
+    this.#put(key, names.length > 0 ? names : null, () => element('ul', {class: 'names'},
+      ...names.map(([name, colour]) => element('li', {}, element('i', {style: `background: ${colour}`}), name))));
+  }
+
+  #put(key, content, draw) {
+    const said = JSON.stringify(content);
+    if (this.entries.get(key)?.said === said) return;
+    this.entries.get(key)?.drawn.remove();
+    this.entries.delete(key);
+    if (content) {
+      const drawn = draw(content);
+      this.element.append(drawn);
+      this.entries.set(key, {said, drawn});
     }
-    this.element.setAttribute('aria-label', [...this.element.querySelectorAll('figcaption')].map((c) => c.textContent).join(', '));
-    this.element.hidden = this.bars.size === 0;
+    this.element.setAttribute('aria-label', [...this.element.querySelectorAll('figcaption, li')].map((c) => c.textContent).join(', '));
+    this.element.hidden = this.entries.size === 0;
   }
 }

@@ -1,7 +1,7 @@
 import {count, quantity} from './quantity.js';
 import {ICONS} from './icons.js';
 import {REGION_COLOURS} from '../render/themes.js';
-import {button, buttons, choice, element, note, section, segments, slider, toggle, vector} from './widgets.js';
+import {button, buttons, choice, element, inModes, note, section, segments, slider, toggle, vector} from './widgets.js';
 
 /** The panel at the side: what can be set, by mode. */
 export class Panel {
@@ -11,7 +11,7 @@ export class Panel {
     const {live} = app.session;
     this.element = element('aside', {class: 'panel card', 'aria-label': 'Settings'});
     if (live) this.element.append(this.#time(), this.#forces(), this.#editing(), this.#vibrations(), this.#selection());
-    else this.element.append(this.#playback());
+    this.element.append(this.#playback());
     this.element.append(this.#view(), ...(live ? [this.#export()] : []));
   }
 
@@ -25,8 +25,9 @@ export class Panel {
     }, element('span', {}, String(k + 1)), quantity(frequency, 'Hz'))));
   }
 
-  showState({settings, fixed, can_undo, can_redo}) {
-    if (!this.app.session.live) return void this.speed.show(settings.speed);
+  showState({settings, fixed, handles, can_undo, can_redo}) {
+    this.playbackSpeed.show(settings.speed);
+    if (!this.app.session.live) return;
     this.speed.show(settings.speed);
     this.step.show(1000 * settings.step);
     this.stiffness.show(settings.stiffness);
@@ -40,12 +41,15 @@ export class Panel {
     this.free.disabled = fixed.length === 0;
     this.undo.disabled = !can_undo;
     this.redo.disabled = !can_redo;
+    this.save.disabled = handles.length === 0;
   }
 
   showOptions(options) {
     this.colours.show(options.colours);
-    this.stretchRange.hidden = options.colours !== 'stretch';
-    this.stretchRange.show(100 * options.stretchRange);
+    this.colours.querySelector('[data-value=error]').hidden = this.overlay.hidden = !this.app.compares;
+    this.overlay.show(options.overlay);
+    this.strainRange.hidden = options.colours !== 'strain';
+    this.strainRange.show(100 * options.strainRange);
     for (const name of ['wireframe', 'components', 'regions']) this[name]?.show(options[name]);
     if (!this.app.session.live) return;
     this.brush.show(100 * options.brush);
@@ -88,8 +92,7 @@ export class Panel {
     this.step = slider('Time step', {low: 0.05, high: 50, log: true, unit: 'ms'}, (ms) => this.#set({step: ms / 1000}));
     this.integrator = choice('Integrator', [], (integrator) => this.#set({integrator}));
     const made = section('Time', this.speed, this.step, this.integrator);
-    made.dataset.for = 'simulate';
-    return made;
+    return inModes('simulate', made);
   }
 
   #forces() {
@@ -111,8 +114,7 @@ export class Panel {
       buttons(button('None', () => this.#set({gravity: [0, 0, 0]})), button('Earth', () => this.#set({gravity: along(-9.81)})),
         button('Sideways', () => this.#set({gravity: [9.81, 0, 0]}))),
       this.stiffness, this.massDamping, this.stiffnessDamping, this.floor, this.floorHeight);
-    made.dataset.for = 'simulate';
-    return made;
+    return inModes('simulate', made);
   }
 
   #damp(part) {
@@ -128,15 +130,14 @@ export class Panel {
     this.brush = slider('Brush', {low: 0.5, high: 25, log: true, unit: '%', title: 'Radius over the object’s diagonal'},
       (percent) => app.setOptions({brush: percent / 100}));
     this.selected = note('');
-    this.fix = button('Hold in place', () => app.fixSelection(), {kind: 'only-simulate'});
-    this.free = button('Free all', () => app.session.ask({do: 'fix', nodes: []}), {kind: 'only-simulate'});
-    this.make = button('Movable handle', () => app.makeHandle(true), {kind: 'only-edit primary', title: 'Enter'});
-    this.hold = button('Fixed handle', () => app.makeHandle(false), {kind: 'only-edit'});
+    this.fix = inModes('simulate', button('Hold in place', () => app.fixSelection()));
+    this.free = inModes('simulate', button('Free all', () => app.session.ask({do: 'fix', nodes: []})));
+    this.make = inModes('edit', button('Movable handle', () => app.makeHandle(true), {kind: 'primary', title: 'Enter'}));
+    this.hold = inModes('edit', button('Fixed handle', () => app.makeHandle(false)));
     this.drop = button('Clear', () => app.select([], 'replace'), {title: 'Esc'});
     const made = section('Selection', this.brush, this.selected, buttons(this.make, this.hold, this.fix, this.free, this.drop));
-    made.dataset.for = 'simulate edit';
     this.showSelection(0);
-    return made;
+    return inModes('simulate edit', made);
   }
 
   #editing() {
@@ -145,15 +146,14 @@ export class Panel {
     this.gizmo = segments('Gizmo', [['translate', 'Translate', 'g'], ['rotate', 'Rotate', 'g']], (gizmo) => app.setOptions({gizmo}));
     this.undo = button('Undo', () => app.session.ask({do: 'undo'}), {title: 'Ctrl+Z'});
     this.redo = button('Redo', () => app.session.ask({do: 'redo'}), {title: 'Ctrl+Shift+Z'});
+    this.save = button('Save', () => app.save('scene'), {title: 'A scene that `supple edit` takes'});
     const file = element('input', {type: 'file', accept: '.json,application/json', hidden: true, 'aria-label': 'Scene file', onchange: async () => {
       if (file.files[0]) app.loadScene(await file.files[0].text());
       file.value = '';
     }});
     const made = section('Handles', this.handleList, this.gizmo,
-      buttons(this.undo, this.redo, button('Save', () => app.save('scene'), {title: 'A scene that `supple edit` takes'}),
-        button('Load', () => file.click())), file);
-    made.dataset.for = 'edit';
-    return made;
+      buttons(this.undo, this.redo, this.save, button('Load', () => file.click())), file);
+    return inModes('edit', made);
   }
 
   #vibrations() {
@@ -164,37 +164,38 @@ export class Panel {
     });
     this.modeList = element('div', {class: 'mode-list', role: 'listbox', 'aria-label': 'Vibration modes'});
     const made = section('Vibration modes', this.amplitude, this.modeList);
-    made.dataset.for = 'modes';
-    return made;
+    return inModes('modes', made);
   }
 
   #view() {
     const {app} = this;
     const flip = (name, label, title) => (this[name] = toggle(label, (on) => app.setOptions({[name]: on}), {title}));
-    this.colours = segments('Colour', [['plain', 'Plain'], ['displacement', 'Displacement'], ['stretch', 'Stretch']],
+    this.colours = segments('Colour', [['plain', 'Plain'], ['displacement', 'Displacement'], ['strain', 'Strain'], ['error', 'Error']],
       (colours) => app.setOptions({colours}));
-    this.stretchRange = slider('Range', {low: 1, high: 100, log: true, unit: '%'}, (percent) => app.setOptions({stretchRange: percent / 100}));
-    const parts = [this.colours, this.stretchRange, flip('components', 'Selected components', 'The components whose forces stand for all (c)'),
+    this.strainRange = slider('Range', {low: 1, high: 100, log: true, unit: '%'}, (percent) => app.setOptions({strainRange: percent / 100}));
+    const parts = [this.colours, this.strainRange, flip('components', 'Selected components', 'The components whose forces stand for all (c)'),
       flip('wireframe', 'Wireframe', 'w')];
+    if (app.session.live) inModes('simulate edit modes', this.components);
     if (app.session.live) {
       parts.push(flip('regions', 'Held regions'));
       this.positions = toggle('Deform on the server', (on) => app.setOptions({stream: on ? 'positions' : 'coordinates'}),
         {title: 'Positions travel instead of reduced coordinates: for graphics without float targets'});
-      parts.push(this.positions);
+      parts.push(inModes('simulate edit modes', this.positions));
     }
     return section('View', ...parts);
   }
 
   #playback() {
-    this.speed = slider('Speed', {low: 0.01, high: 10, log: true, unit: '×'}, (speed) => this.#set({speed}));
-    return section('Recording', this.speed);
+    this.playbackSpeed = slider('Speed', {low: 0.01, high: 10, log: true, unit: '×'}, (speed) => this.#set({speed}));
+    this.overlay = toggle('Overlay', (overlay) => this.app.setOptions({overlay}), {title: 'The second as a ghost in the place of the first (o)'});
+    return inModes('replay', section('Replay', this.playbackSpeed, this.overlay));
   }
 
   #export() {
     const save = (kind, label, title) => button(label, () => this.app.save(kind), {title});
     const row = buttons(save('obj', 'OBJ', 'The shape as it is now'), save('ply', 'PLY', 'The shape as it is now'),
-      save('png', 'PNG', 'The picture as it is now (s)'), save('glb', 'glTF', 'The recording, or the last seconds, as an animation'),
-      save('html', 'Page', 'The recording, or the last seconds, as one HTML file that needs no server'));
+      save('png', 'PNG', 'The picture as it is now (s)'), inModes('simulate edit modes', save('glb', 'glTF', 'What was recorded, or the last seconds, as an animation')),
+      inModes('simulate edit modes', save('html', 'Page', 'What was recorded, or the last seconds, as one HTML file that needs no server')));
     row.classList.add('exports');
     return section('Export', row);
   }

@@ -12,6 +12,18 @@ export function element(tag, attributes = {}, ...children) {
   return made;
 }
 
+export function svgElement(tag, attributes = {}) {
+  const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  return made;
+}
+
+/** An element that is there in some modes alone, `modes` being their names; the layout hides it in others. */
+export function inModes(modes, made) {
+  made.dataset.for = modes;
+  return made;
+}
+
 export function button(label, act, {title, icon, kind = ''} = {}) {
   const made = element('button', {type: 'button', class: `button ${kind}`, onclick: act, title: title ?? null,
     'aria-label': icon ? label : null});

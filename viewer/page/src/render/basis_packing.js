@@ -1,5 +1,5 @@
 /**
- * Packs rows of the basis for texture arrays whose texels are nodes and whose layers hold four fields each: with block
+ * Packs rows of the basis for texture arrays whose texels are vertices and whose layers hold four fields each: with block
  * 3 a layer is four fields of W; with block 1 three layers in turn are four fields of the rows x, y and z. Neighbouring
  * fragments then read neighbouring texels of one layer.
  *
@@ -15,11 +15,12 @@ export const MOST_GROUPS = 64;
 
 /**
  * @param {import('../session/model.js').Model} model
- * @param {import('./node_grid.js').NodeGrid} grid
+ * @param {ArrayLike<number>} nodeOf   of each vertex
+ * @param {import('./vertex_grid.js').VertexGrid} grid
  * @param {{layers: number, bytes: number}} limits   of one texture array
  * @returns {Generator<Chunk>}
  */
-export function* packBasis({about: {block, fields, nodes}, basis}, grid, limits) {
+export function* packBasis({about: {block, fields}, basis}, nodeOf, grid, limits) {
   const layersOfGroup = block === 3 ? 1 : 3;
   const bytesOfGroup = 16 * grid.texels * layersOfGroup;
   const groups = Math.ceil(fields / 4);
@@ -32,8 +33,8 @@ export function* packBasis({about: {block, fields, nodes}, basis}, grid, limits)
       for (let part = 0; part < layersOfGroup; ++part) {
         const layer = (g * layersOfGroup + part) * grid.texels * 4;
         const field = 4 * (first + g), lanes = Math.min(4, fields - field);
-        for (let v = 0; v < nodes; ++v) {
-          const row = (v * layersOfGroup + part) * fields + field;
+        for (let v = 0; v < nodeOf.length; ++v) {
+          const row = (nodeOf[v] * layersOfGroup + part) * fields + field;
           for (let lane = 0; lane < lanes; ++lane) data[layer + 4 * v + lane] = basis[row + lane];
         }
       }

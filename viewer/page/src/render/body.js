@@ -1,17 +1,18 @@
 import {
-  BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, GLSL3, LineSegments, Mesh, RawShaderMaterial, Scene,
+  BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, GLSL3, LineSegments, Mesh, RawShaderMaterial, Vector3,
 } from 'three';
 import {edgesOf} from '../geometry/rings.js';
 import {colourTexture} from './colour_maps.js';
 import {PRECISION} from './pixel_pass.js';
-import {TEXEL_OF_NODE} from './node_grid.js';
+import {TEXEL_OF_VERTEX} from './vertex_grid.js';
 import {SHADING, shadowBy} from './shading.js';
 
 /** What the surface's colour says. */
 export const COLOURS = {
   plain: 0,
   displacement: 1,  // |x − X| [m]
-  stretch: 2,       // √ area over area at rest, less 1
+  strain: 2,        // λ − 1 of the surface's principal stretch that is farthest from 1
+  error: 3,         // |x − x of the other recording| [m]
 };
 
 /** The surface as it is drawn: its vertices are texels that a Deformer fills. */
@@ -22,15 +23,16 @@ export class Body {
    */
   constructor(deformer, light) {
     this.deformer = deformer;
-    const {model} = deformer.shape;
-    this.tint = new BufferAttribute(new Uint8Array(4 * model.about.nodes), 4, true);
+    const {model, fans} = deformer.shape;
+    this.tint = new BufferAttribute(new Uint8Array(4 * fans.count), 4, true);
     this.geometry = new BufferGeometry();
-    this.geometry.setIndex(new BufferAttribute(model.triangles, 1));
+    this.geometry.setIndex(new BufferAttribute(fans.triangles, 1));
     this.geometry.setAttribute('tint', this.tint);
     const side = model.about.solid ? FrontSide : DoubleSide;
     const places = {
       columns: {value: deformer.grid.columns},
-      positions: {value: null}, normals: {value: null}, rest: {value: deformer.rest},
+      positions: {value: null}, normals: {value: null}, rest: {value: deformer.rest}, other: {value: null},
+      shift: {value: new Vector3()},
     };
     this.uniforms = {
       ...places, ...light,
@@ -54,9 +56,8 @@ export class Body {
       glslVersion: GLSL3, side, uniforms: places, colorWrite: false,
       vertexShader: PRECISION + PLAIN_VERTEX, fragmentShader: PRECISION + 'void main() {}',
     });
-    const caster = new Mesh(this.geometry, this.casterMaterial);
-    caster.frustumCulled = false;
-    this.casters = new Scene().add(caster);
+    this.caster = new Mesh(this.geometry, this.casterMaterial);
+    this.caster.frustumCulled = false;
 
     // Of a ghost only the nearest layer is seen: the depths of this veil hide those behind.
     this.veilMaterial = this.casterMaterial.clone();
@@ -69,6 +70,15 @@ export class Body {
     this.mesh.add(this.veil);
   }
 
+  get shape() {
+    return this.deformer.shape;
+  }
+
+  /** Where the object is drawn, from where it is. */
+  get shift() {
+    return this.uniforms.shift.value;
+  }
+
   update() {
     this.deformer.update();
     this.uniforms.positions.value = this.deformer.positions;
@@ -77,21 +87,25 @@ export class Body {
 
   /** @param {keyof COLOURS} colours  @param {number} range  value of the last colour */
   show(colours, range) {
+    const strained = colours === 'strain', comes = strained && !this.deformer.strained;
+    this.deformer.strained = strained;
+    if (comes) this.update();
     this.uniforms.colours.value = COLOURS[colours];
     this.uniforms.range.value = range;
   }
 
-  /** Lets what is inside shimmer through. */
+  /** Lets what is inside, or another body in the same place, shimmer through. */
   set ghost(on) {
     this.uniforms.ghost.value = on ? 1 : 0;
     this.material.transparent = on;
+    for (const material of [this.material, this.veilMaterial]) material.polygonOffsetFactor = material.polygonOffsetUnits = on ? 4 : 1;
     this.veil.visible = on;
   }
 
   set wireframe(on) {
     if (on && !this.lines) {
       const geometry = new BufferGeometry();
-      geometry.setIndex(new BufferAttribute(edgesOf(this.deformer.shape.rings), 1));
+      geometry.setIndex(new BufferAttribute(edgesOf(this.shape.rings), 1));
       geometry.setAttribute('tint', this.tint);
       this.lines = new LineSegments(geometry, this.lineMaterial);
       this.lines.frustumCulled = false;
@@ -100,10 +114,12 @@ export class Body {
     if (this.lines) this.lines.visible = on;
   }
 
-  /** @param {Iterable<[Iterable<number>, number[]]>} regions  nodes, and red, green, blue and share, each 0 … 255 */
+  /** @param {Iterable<[Iterable<number>, number[]]>} regions  nodes, and red, green and blue, each 0 … 255 */
   paint(regions) {
-    this.tint.array.fill(0);
-    for (const [nodes, colour] of regions) for (const v of nodes) this.tint.array.set(colour, 4 * v);
+    const tint = this.tint.array.fill(0), {nodeOf} = this.shape.fans;
+    for (const [nodes, colour] of regions) for (const v of nodes) tint.set([...colour, 255], 4 * v);
+    for (let v = this.shape.model.about.nodes; v < nodeOf.length; ++v)
+      tint.copyWithin(4 * v, 4 * nodeOf[v], 4 * nodeOf[v] + 4);
     this.tint.needsUpdate = true;
   }
 
@@ -118,9 +134,11 @@ export class Body {
 const PLAIN_VERTEX = `
   uniform mat4 modelViewMatrix, projectionMatrix;
   uniform sampler2D positions;
-  ${TEXEL_OF_NODE}
+  uniform vec3 shift;
+  ${TEXEL_OF_VERTEX}
   void main() {
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(texelFetch(positions, texel_of(gl_VertexID), 0).xyz, 1);
+    vec3 at = texelFetch(positions, texel_of(gl_VertexID), 0).xyz + shift;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1);
   }
 `;
 
@@ -132,10 +150,11 @@ const LINE_FRAGMENT = `
 
 const VERTEX = `
   uniform mat4 modelViewMatrix, projectionMatrix;
-  uniform sampler2D positions, normals, rest, sky_light;
+  uniform sampler2D positions, normals, rest, other, sky_light;
+  uniform vec3 shift;
   uniform int colours;
   uniform float range;
-  ${TEXEL_OF_NODE}
+  ${TEXEL_OF_VERTEX}
   in vec4 tint;
   out vec3 at, normal;
   out vec4 painted;
@@ -149,7 +168,9 @@ const VERTEX = `
     sky = texelFetch(sky_light, texel, 0).r;
     painted = vec4(tint.rgb * tint.rgb * tint.a, tint.a);
     share = colours == ${COLOURS.displacement} ? distance(at, texelFetch(rest, texel, 0).xyz) / range
-          : colours == ${COLOURS.stretch} ? 0.5 + 0.5 * n.w / range : 0.0;
+          : colours == ${COLOURS.error} ? distance(at, texelFetch(other, texel, 0).xyz) / range
+          : colours == ${COLOURS.strain} ? 0.5 + 0.5 * n.w / range : 0.0;
+    at += shift;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(at, 1);
   }
 `;
@@ -159,6 +180,7 @@ const FRAGMENT = `
   uniform sampler2D colour_map;
   uniform int colours;
   uniform float ghost, sheet;
+  const float PAINT = 0.88;  // of a region's colour
   ${SHADING}
   ${shadowBy(8)}
   in vec3 at, normal;
@@ -168,10 +190,7 @@ const FRAGMENT = `
 
   void main() {
     vec3 to_eye = normalize(cameraPosition - at);
-    // Creases stay sharp: there the triangle's own normal counts.
-    vec3 face = cross(dFdx(at), dFdy(at));
-    face *= (dot(face, normal) < 0.0 ? -1.0 : 1.0) * inversesqrt(max(dot(face, face), 1e-30));
-    vec3 n = normalize(mix(face, normal, smoothstep(0.68, 0.84, length(normal))));
+    vec3 n = normalize(normal);
     // A normal that turns away belongs to the other side of a sheet, or was smoothed around the edge of what is seen.
     float facing = dot(n, to_eye);
     if (facing < -0.25 || (sheet > 0.5 && !gl_FrontFacing && facing < 0.0)) n = -n;
@@ -180,10 +199,12 @@ const FRAGMENT = `
 
     vec3 colour = albedo;
     if (colours != 0) {
-      vec3 root = texture(colour_map, vec2((share * 255.0 + 0.5) / 256.0, colours == ${COLOURS.stretch} ? 0.75 : 0.25)).rgb;
+      vec3 root = texture(colour_map, vec2((share * 255.0 + 0.5) / 256.0, colours == ${COLOURS.strain} ? 0.75 : 0.25)).rgb;
       colour = root * root;
     }
-    colour = colour * (1.0 - painted.a) + painted.rgb;
+    // Regions end halfway to the next node, with a sharp edge: what fades would look like a shadow.
+    float width = 0.75 * fwidth(painted.a);
+    colour = mix(colour, painted.rgb / max(painted.a, 1e-3), PAINT * smoothstep(0.5 - width, 0.5 + width, painted.a));
     float cosine = dot(n, key_towards);
     float key = cosine > 0.0 ? cosine * unshadowed(at + 0.012 * scene_radius * n, 0.008) : 0.0;
     float alpha = ghost > 0.5 ? mix(0.30, 0.95, pow(1.0 - abs(dot(n, to_eye)), 1.5)) : 1.0;

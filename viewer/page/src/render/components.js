@@ -3,7 +3,7 @@ import {
   RawShaderMaterial, RedIntegerFormat, UnsignedIntType,
 } from 'three';
 import {mapColour} from './colour_maps.js';
-import {TEXEL_OF_NODE} from './node_grid.js';
+import {TEXEL_OF_VERTEX} from './vertex_grid.js';
 import {PRECISION} from './pixel_pass.js';
 import {SHADING} from './shading.js';
 
@@ -64,7 +64,7 @@ const VERTEX = `
   uniform mat4 modelViewMatrix, projectionMatrix;
   uniform sampler2D positions;
   uniform usampler2D corners;
-  ${TEXEL_OF_NODE}
+  ${TEXEL_OF_VERTEX}
   in vec3 position, colour;
   in float size;
   out vec3 at, normal, albedo;

@@ -3,19 +3,18 @@ import {
   WebGLRenderTarget,
 } from 'three';
 import {packBasis, packCoordinates} from './basis_packing.js';
-import {gridOf, TEXEL_OF_NODE} from './node_grid.js';
+import {gridOf, TEXEL_OF_VERTEX} from './vertex_grid.js';
 import {PixelPass} from './pixel_pass.js';
 
 const LARGEST_TEXTURE = 256 * 2 ** 20;  // bytes; drivers refuse larger ones long before they run out of memory
 const COLUMNS_OF_PAIRS = 2048;          // every WebGL 2 has textures so wide
 
 /**
- * Positions and normals of all nodes as textures, computed on the graphics card from reduced coordinates: first
- * x = X + U q, then normals from the one-ring, weighted by area. What travels in a frame is q alone. The README of this
- * folder counts bytes and fetches.
+ * Positions, normals and strains of all vertices as textures, computed on the graphics card from reduced coordinates:
+ * first x = X + U q, then the rest from the triangles around each vertex. What travels in a frame is q alone. The
+ * README counts bytes and fetches.
  *
- * `positions` has the area around a node at rest as its fourth number, `normals` by what the surface is stretched there
- * (√ area over area at rest, less 1). Normals are 1 long where the surface is flat, and shorter the sharper its crease.
+ * `normals` has the strain of the surface as its fourth number (geometry/strain.js), where `strained` asks for it.
  */
 export class Deformer {
   /**
@@ -25,13 +24,12 @@ export class Deformer {
   constructor(renderer, shape) {
     this.renderer = renderer;
     this.shape = shape;
-    const {model} = shape;
-    this.grid = gridOf(model.about.nodes);
-    this.restAreas = areasOf(model.rest, model.triangles);
-    this.rest = this.#texture(this.#restTexels());
+    this.strained = false;
+    this.grid = gridOf(shape.fans.count);
+    this.rest = this.#texture();
+    this.#fill(this.rest, shape.model.rest);
     this.computes = Deformer.#canCompute(renderer);
-    if (this.computes) this.#preparePasses();
-    else this.#prepareUploads();
+    if (this.computes) this.#prepareNormals();
   }
 
   /** Whether shaders can write floats; otherwise the processor deforms, and textures are uploaded in each frame. */
@@ -41,18 +39,21 @@ export class Deformer {
 
   /** Takes over what the shape has taken. */
   update() {
-    if (this.computes && !this.shape.displacements) this.#compute();
-    else this.#upload();
+    if (this.computes && !this.shape.displacements) this.#computePositions();
+    else this.#uploadPositions();
+    if (this.computes) this.#computeNormals();
+    else this.#uploadNormals();
   }
 
   /** Positions as the graphics card has them, nodes × 3: slow, for tests. */
   readPositions() {
-    const {columns, rows} = this.grid, {nodes} = this.shape.model.about;
-    const uploaded = this.positions === this.uploadedPositions;
-    const texels = uploaded ? this.positions.image.data : new Float32Array(4 * columns * rows);
-    if (!uploaded)
-      this.renderer.readRenderTargetPixels(this.positionTarget, 0, 0, columns, rows, texels);
-    return Float32Array.from({length: 3 * nodes}, (_, i) => texels[4 * Math.floor(i / 3) + i % 3]);
+    return this.#read(this.positions, this.positionTarget, 3);
+  }
+
+  /** Strains as the graphics card has them, one a node: slow, for tests. */
+  readStrains() {
+    const all = this.#read(this.normals, this.normalTarget, 4);
+    return all.filter((_, i) => i % 4 === 3);
   }
 
   dispose() {
@@ -61,15 +62,18 @@ export class Deformer {
       thing?.dispose();
   }
 
-  #preparePasses() {
-    const {model} = this.shape;
+  #target() {
+    return new WebGLRenderTarget(this.grid.columns, this.grid.rows, {
+      type: FloatType, format: RGBAFormat, minFilter: NearestFilter, magFilter: NearestFilter, depthBuffer: false,
+    });
+  }
+
+  #prepareBasis() {
+    const {model, fans} = this.shape;
     const {columns, rows} = this.grid;
     const gl = this.renderer.getContext();
     const limits = {layers: gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS), bytes: LARGEST_TEXTURE};
-    const target = () => new WebGLRenderTarget(columns, rows, {
-      type: FloatType, format: RGBAFormat, minFilter: NearestFilter, magFilter: NearestFilter, depthBuffer: false,
-    });
-    this.chunks = [...packBasis(model, this.grid, limits)].map((chunk) => {
+    this.chunks = [...packBasis(model, fans.nodeOf, this.grid, limits)].map((chunk) => {
       const texture = new DataArrayTexture(chunk.data, columns, rows, chunk.layers);
       texture.type = FloatType;
       texture.needsUpdate = true;
@@ -80,33 +84,34 @@ export class Deformer {
       const defines = {BLOCK: model.about.block, GROUPS: chunk.groups, VECTORS: vectors};
       return {...chunk, data: null, texture, pass: new PixelPass(DISPLACE, uniforms, {defines})};
     });
-    this.positionTarget = target();
-    this.otherTarget = this.chunks.length > 1 ? target() : null;
-    this.normalTarget = target();
-    this.#prepareRings();
-    this.normalPass = new PixelPass(NORMALS, {
-      columns: {value: columns}, positions: {value: null}, rings: {value: this.rings}, pairs: {value: this.pairs},
-    });
+    this.positionTarget = this.#target();
+    this.otherTarget = this.chunks.length > 1 ? this.#target() : null;
   }
 
-  #prepareRings() {
-    const {starts, pairs} = this.shape.rings;
-    const texture = (data, columns, rows) => {
-      const made = new DataTexture(data, columns, rows, RGIntegerFormat, UnsignedIntType);
+  #prepareNormals() {
+    const {starts, pairs} = this.shape.fans.rings, {columns, rows, texels} = this.grid;
+    const texture = (data, width, height) => {
+      const made = new DataTexture(data, width, height, RGIntegerFormat, UnsignedIntType);
       made.internalFormat = 'RG32UI';
       made.needsUpdate = true;
       return made;
     };
-    const ranges = new Uint32Array(2 * this.grid.texels);
+    const ranges = new Uint32Array(2 * texels);
     for (let v = 0; v + 1 < starts.length; ++v) ranges[2 * v] = starts[v], ranges[2 * v + 1] = starts[v + 1];
-    const rows = Math.max(1, Math.ceil(pairs.length / 2 / COLUMNS_OF_PAIRS));
-    const padded = new Uint32Array(2 * COLUMNS_OF_PAIRS * rows);
+    const rowsOfPairs = Math.max(1, Math.ceil(pairs.length / 2 / COLUMNS_OF_PAIRS));
+    const padded = new Uint32Array(2 * COLUMNS_OF_PAIRS * rowsOfPairs);
     padded.set(pairs);
-    this.rings = texture(ranges, this.grid.columns, this.grid.rows);
-    this.pairs = texture(padded, COLUMNS_OF_PAIRS, rows);
+    this.rings = texture(ranges, columns, rows);
+    this.pairs = texture(padded, COLUMNS_OF_PAIRS, rowsOfPairs);
+    this.normalTarget = this.#target();
+    this.normalPass = new PixelPass(NORMALS, {
+      columns: {value: columns}, positions: {value: null}, rest: {value: this.rest}, rings: {value: this.rings},
+      pairs: {value: this.pairs}, strained: {value: false},
+    });
   }
 
-  #compute() {
+  #computePositions() {
+    if (!this.chunks) this.#prepareBasis();
     let base = this.rest;
     // The last chunk has to land in positionTarget, since materials hold its texture.
     for (let k = 0; k < this.chunks.length; ++k) {
@@ -118,68 +123,51 @@ export class Deformer {
       base = target.texture;
     }
     this.positions = this.positionTarget.texture;
-    this.#computeNormals();
   }
 
   #computeNormals() {
-    this.normalPass.uniforms.positions.value = this.positions;
+    const {positions, strained} = this.normalPass.uniforms;
+    positions.value = this.positions;
+    strained.value = this.strained;
     this.normalPass.render(this.renderer, this.normalTarget);
     this.normals = this.normalTarget.texture;
   }
 
-  #prepareUploads() {
-    this.uploadedPositions ??= this.#texture(new Float32Array(4 * this.grid.texels));
-    if (!this.computes) this.uploadedNormals ??= this.#texture(new Float32Array(4 * this.grid.texels));
+  #uploadPositions() {
+    this.positions = this.uploadedPositions ??= this.#texture();
+    this.#fill(this.positions, this.shape.positions());
   }
 
-  #upload() {
-    this.#prepareUploads();
-    const x = this.shape.positions(), {nodes} = this.shape.model.about;
-    const texels = this.uploadedPositions.image.data;
-    for (let v = 0; v < nodes; ++v) {
-      texels[4 * v] = x[3 * v], texels[4 * v + 1] = x[3 * v + 1], texels[4 * v + 2] = x[3 * v + 2];
-      texels[4 * v + 3] = this.restAreas[v];
+  #uploadNormals() {
+    this.normals = this.uploadedNormals ??= this.#texture();
+    const normals = this.shape.normals(), strains = this.strained ? this.shape.strains() : null;
+    const texels = this.normals.image.data;
+    for (let v = 0; v < this.shape.fans.count; ++v) {
+      for (let axis = 0; axis < 3; ++axis) texels[4 * v + axis] = normals[3 * v + axis];
+      texels[4 * v + 3] = strains?.[v] ?? 0;
     }
-    this.uploadedPositions.needsUpdate = true;
-    this.positions = this.uploadedPositions;
-    if (this.computes) return this.#computeNormals();
-    const normals = this.shape.normals(), areas = areasOf(x, this.shape.model.triangles), packed = this.uploadedNormals.image.data;
-    for (let v = 0; v < nodes; ++v) {
-      packed.set(normals.subarray(3 * v, 3 * v + 3), 4 * v);
-      packed[4 * v + 3] = Math.sqrt(areas[v] / (this.restAreas[v] || 1)) - 1;
-    }
-    this.uploadedNormals.needsUpdate = true;
-    this.normals = this.uploadedNormals;
+    this.normals.needsUpdate = true;
   }
 
-  #restTexels() {
-    const {rest, about: {nodes}} = this.shape.model;
-    const texels = new Float32Array(4 * this.grid.texels);
-    for (let v = 0; v < nodes; ++v) {
-      texels.set(rest.subarray(3 * v, 3 * v + 3), 4 * v);
-      texels[4 * v + 3] = this.restAreas[v];
-    }
-    return texels;
+  #texture() {
+    return new DataTexture(new Float32Array(4 * this.grid.texels), this.grid.columns, this.grid.rows, RGBAFormat, FloatType);
   }
 
-  #texture(texels) {
-    const texture = new DataTexture(texels, this.grid.columns, this.grid.rows, RGBAFormat, FloatType);
+  /** Gives each vertex of a texture the position of its node. */
+  #fill(texture, x) {
+    const {nodeOf} = this.shape.fans, texels = texture.image.data;
+    for (let v = 0; v < nodeOf.length; ++v)
+      for (let axis = 0; axis < 3; ++axis) texels[4 * v + axis] = x[3 * nodeOf[v] + axis];
     texture.needsUpdate = true;
-    return texture;
   }
-}
 
-/** Twice the area of the triangles around each node. */
-function areasOf(x, triangles) {
-  const areas = new Float32Array(x.length / 3);
-  for (let t = 0; t < triangles.length; t += 3) {
-    const a = 3 * triangles[t], b = 3 * triangles[t + 1], c = 3 * triangles[t + 2];
-    const ux = x[b] - x[a], uy = x[b + 1] - x[a + 1], uz = x[b + 2] - x[a + 2];
-    const vx = x[c] - x[a], vy = x[c + 1] - x[a + 1], vz = x[c + 2] - x[a + 2];
-    const area = Math.hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
-    for (let corner = 0; corner < 3; ++corner) areas[triangles[t + corner]] += area;
+  /** The first numbers of each node's texel. */
+  #read(texture, target, numbers) {
+    const {columns, rows} = this.grid, {nodes} = this.shape.model.about;
+    const uploaded = texture.isDataTexture, texels = uploaded ? texture.image.data : new Float32Array(4 * columns * rows);
+    if (!uploaded) this.renderer.readRenderTargetPixels(target, 0, 0, columns, rows, texels);
+    return Float32Array.from({length: numbers * nodes}, (_, i) => texels[4 * Math.floor(i / numbers) + i % numbers]);
   }
-  return areas;
 }
 
 const DISPLACE = `
@@ -207,24 +195,44 @@ const DISPLACE = `
 `;
 
 const NORMALS = `
-  uniform sampler2D positions;
+  uniform sampler2D positions, rest;
   uniform usampler2D rings, pairs;
-  ${TEXEL_OF_NODE}
+  uniform bool strained;
+  ${TEXEL_OF_VERTEX}
   out vec4 normal;
 
+  // λ − 1 of the principal stretch that is farthest from 1: see geometry/strain.js.
+  float farthest(mat3 twice_e) {
+    float trace = twice_e[0].x + twice_e[1].y + twice_e[2].z;
+    float squares = dot(twice_e[0], twice_e[0]) + dot(twice_e[1], twice_e[1]) + dot(twice_e[2], twice_e[2]);
+    float radius = 0.5 * sqrt(max(0.0, 2.0 * squares - trace * trace));
+    vec2 strain = sqrt(max(vec2(0), 1.0 + 0.5 * trace + vec2(radius, -radius))) - 1.0;
+    return strain.x > -strain.y ? strain.x : strain.y;
+  }
+
   void main() {
-    ivec2 node = ivec2(gl_FragCoord.xy);
-    vec4 at = texelFetch(positions, node, 0);
-    uvec2 range = texelFetch(rings, node, 0).xy;
-    vec3 sum = vec3(0);
+    ivec2 vertex = ivec2(gl_FragCoord.xy);
+    vec3 at = texelFetch(positions, vertex, 0).xyz, from = strained ? texelFetch(rest, vertex, 0).xyz : vec3(0), sum = vec3(0);
+    uvec2 range = texelFetch(rings, vertex, 0).xy;
+    mat3 twice_e = mat3(0);
     float area = 0.0;
     for (uint k = range.x; k < range.y; ++k) {
       ivec2 others = ivec2(texelFetch(pairs, ivec2(k % ${COLUMNS_OF_PAIRS}u, k / ${COLUMNS_OF_PAIRS}u), 0).xy);
-      vec3 turn = cross(texelFetch(positions, texel_of(others.x), 0).xyz - at.xyz,
-                        texelFetch(positions, texel_of(others.y), 0).xyz - at.xyz);
-      sum += turn;
-      area += length(turn);
+      vec3 b = texelFetch(positions, texel_of(others.x), 0).xyz - at;
+      vec3 c = texelFetch(positions, texel_of(others.y), 0).xyz - at;
+      sum += cross(b, c);
+      if (!strained) continue;
+      vec3 B = texelFetch(rest, texel_of(others.x), 0).xyz - from;
+      vec3 C = texelFetch(rest, texel_of(others.y), 0).xyz - from;
+      vec3 N = cross(B, C), dual_b = cross(C, N), dual_c = cross(N, B);
+      float squared = dot(N, N), scale = squared > 0.0 ? pow(squared, -1.5) : 0.0;
+      mat3 mixed = outerProduct(dual_b, dual_c);
+      twice_e += scale * (dot(b, b) - dot(B, B)) * outerProduct(dual_b, dual_b)
+               + scale * (dot(c, c) - dot(C, C)) * outerProduct(dual_c, dual_c)
+               + scale * (dot(b, c) - dot(B, C)) * (mixed + transpose(mixed));
+      area += sqrt(squared);
     }
-    normal = vec4(area > 0.0 ? sum / area : vec3(0), at.w > 0.0 ? sqrt(area / at.w) - 1.0 : 0.0);
+    float twice = length(sum);
+    normal = vec4(twice > 0.0 ? sum / twice : vec3(0), area > 0.0 ? farthest(twice_e / area) : 0.0);
   }
 `;

@@ -1,19 +1,29 @@
 const SLOW = 45, FAST = 22;      // milliseconds between pictures
-const COARSEST = 0.5;            // pixels of a picture over those of the screen, along each side
+const COARSEST = 0.5;            // scale
 const WINDOW = 6;                // pictures that a judgement takes
-const PATIENCE = 250;            // milliseconds of rest after which a fine picture is worth its time
+const PATIENCE = 150;            // milliseconds of rest after which a fine picture is worth its time
 
 /**
  * Draws coarser while things move on machines that are slow, and finely when they rest. It looks at pictures that
  * follow each other as fast as the browser can, so that a session which sends few frames is not taken for a slow page.
+ * A scale is pixels of a picture over those of the screen, along each side.
  */
 export class Quality {
-  /** @param {(scale: number) => void} apply  sets pixels over those of the screen */
-  constructor(apply) {
+  /**
+   * @param {(scale: number) => void} apply
+   * @param {number} finest  scale at rest: more than 1 where nothing else smooths edges
+   */
+  constructor(apply, finest) {
     this.apply = apply;
+    this.finest = finest;
     this.moving = 1;  // scale while things move
     this.shown = 1;
     this.intervals = [];
+  }
+
+  /** Whether the last picture is a fine one. */
+  get fine() {
+    return this.shown === this.finest;
   }
 
   /** Before a picture at `time`. @param {boolean} pressed  whether it was asked for as soon as the last was done */
@@ -27,14 +37,14 @@ export class Quality {
 
   /** After it. @param {() => void} redraw  draws once more, finely */
   end(redraw) {
-    if (this.shown < 1) this.timer = setTimeout(redraw, PATIENCE);
+    if (!this.fine) this.timer = setTimeout(redraw, PATIENCE);
   }
 
   /** Before a picture that is to be fine. */
   rest() {
     clearTimeout(this.timer);
     this.last = undefined;
-    this.#show(1);
+    this.#show(this.finest);
   }
 
   #judge(interval) {
@@ -47,7 +57,7 @@ export class Quality {
   }
 
   #show(scale) {
-    if (Math.abs(scale - this.shown) < 0.02 && scale !== 1 || scale === this.shown) return;
+    if (scale === this.shown || Math.abs(scale - this.shown) < 0.02 && scale < 1) return;
     this.shown = scale;
     this.apply(scale);
   }

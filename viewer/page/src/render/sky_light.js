@@ -19,30 +19,43 @@ export class SkyLight {
     this.casters = casters;
     this.lamp = new Lamp(MAP_SIZE);
     this.receivers = [];
-    this.count = 0;
+    this.restart();
     this.alpha = {value: 1};
     this.strength = {value: 1};
     this.bias = {value: 0};
   }
 
   /**
-   * Adds places that receive light, given by textures of their positions and normals.
+   * Adds places that receive light, given by textures of their positions and normals, and by how far they are shifted.
    * @returns {import('three').Texture}  whose red is 1 where the whole sky is seen from a level place
    */
-  addReceiver(columns, rows, textures, filter = NearestFilter) {
+  addReceiver(columns, rows, places, filter = NearestFilter) {
     const target = new WebGLRenderTarget(columns, rows, {
       type: HalfFloatType, minFilter: filter, magFilter: filter, wrapS: ClampToEdgeWrapping, wrapT: ClampToEdgeWrapping,
       depthBuffer: false,
     });
     const pass = new PixelPass(RECEIVE, {
-      ...textures, towards: this.lamp.towards, shadow_map: this.lamp.map, to_shadow: this.lamp.matrix,
+      shift: {value: new Vector3()}, ...places, towards: this.lamp.towards, shadow_map: this.lamp.map, to_shadow: this.lamp.matrix,
       alpha: this.alpha, strength: this.strength, bias: this.bias,
     }, {
       blending: CustomBlending, blendEquation: AddEquation, blendSrc: SrcAlphaFactor, blendDst: OneMinusSrcAlphaFactor,
       transparent: true,
     });
     this.receivers.push({target, pass});
+    this.restart();  // what is new has no light yet
     return target.texture;
+  }
+
+  /** @param {import('three').Texture} texture  that addReceiver gave */
+  removeReceiver(texture) {
+    const k = this.receivers.findIndex(({target}) => target.texture === texture), [{target, pass}] = this.receivers.splice(k, 1);
+    target.dispose();
+    pass.dispose();
+  }
+
+  /** Forgets all light, as of what stood elsewhere. */
+  restart() {
+    this.count = 0;
   }
 
   /** Adds a lamp's light. @param {Vector3} up  @param {{centre: number[], radius: number}} ball around the casters */
@@ -84,7 +97,7 @@ const RECEIVE = `
   uniform sampler2D positions, normals;
   uniform sampler2DShadow shadow_map;
   uniform mat4 to_shadow;
-  uniform vec3 towards;
+  uniform vec3 towards, shift;
   uniform float alpha, strength, bias;
   out vec4 light;
 
@@ -92,7 +105,7 @@ const RECEIVE = `
     ivec2 place = ivec2(gl_FragCoord.xy);
     vec3 n = texelFetch(normals, place, 0).xyz;
     n /= max(length(n), 1e-6);
-    vec3 at = texelFetch(positions, place, 0).xyz + bias * n;
+    vec3 at = texelFetch(positions, place, 0).xyz + shift + bias * n;
     vec3 p = (to_shadow * vec4(at, 1)).xyz * 0.5 + 0.5;
     bool outside = any(lessThan(p.xy, vec2(0))) || any(greaterThan(p.xy, vec2(1)));
     float seen = outside ? 1.0 : texture(shadow_map, vec3(p.xy, min(p.z, 1.0)));

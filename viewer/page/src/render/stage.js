@@ -1,5 +1,5 @@
 import {
-  Color, GLSL3, Matrix4, Mesh, PerspectiveCamera, PlaneGeometry, RawShaderMaterial, Scene, Vector3, WebGLRenderer,
+  Color, GLSL3, Matrix4, Mesh, PerspectiveCamera, PlaneGeometry, RawShaderMaterial, Scene, TOUCH, Vector3, WebGLRenderer,
 } from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 import {Body} from './body.js';
@@ -18,6 +18,8 @@ const SETTLED = 96;                       // lamps after the last change that ma
 const SETTLED_IN_SOFTWARE = 32;           // less complete, but soon
 const AZIMUTH = 30, ELEVATION = 18;       // degrees, as in Supple's own pictures
 const FIELD_OF_VIEW = 24;
+const GAP = 0.25;                         // between an object and its reference, over the diagonal
+const SMOOTH = 2;                         // points along a pixel's side that smooth edges, without a graphics card
 
 /** The studio: an object on a ground, light, a camera. It draws when something has changed, and only then. */
 export class Stage {
@@ -27,7 +29,8 @@ export class Stage {
     this.software = drawsInSoftware();
     this.renderer = new WebGLRenderer({antialias: !this.software, powerPreference: 'high-performance'});
     this.pixelRatio = Math.min(2, window.devicePixelRatio);
-    this.quality = new Quality((scale) => this.renderer.setPixelRatio(this.pixelRatio * scale));
+    this.quality = new Quality((scale) => this.renderer.setPixelRatio(this.pixelRatio * scale),
+      this.software ? SMOOTH / this.pixelRatio : 1);
     this.renderer.setPixelRatio(this.pixelRatio);
     this.canvas = this.renderer.domElement;
     this.canvas.tabIndex = 0;
@@ -45,7 +48,7 @@ export class Stage {
     this.themeName = 'light';
     this.ball = {centre: [0, 0, 0], radius: 1};
     this.unsettled = 0;
-    this.inset = 0;  // pixels at the right that a panel covers
+    this.inset = {right: 0, bottom: 0};  // pixels that a panel covers
     new ResizeObserver(() => this.#resize()).observe(parent);
     this.#resize();
   }
@@ -56,6 +59,8 @@ export class Stage {
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.18;
     this.controls.zoomToCursor = true;
+    // An object that fills a small screen leaves no room beside it, where one finger turns the view.
+    this.controls.touches.TWO = TOUCH.DOLLY_ROTATE;
     this.controls.addEventListener('change', () => this.invalidate());
   }
 
@@ -67,22 +72,49 @@ export class Stage {
     this.axis = upAxisOf(shape.model);
     this.up = new Vector3().setComponent(this.axis, 1);
     this.camera.up.copy(this.up);
-    this.deformer = new Deformer(this.renderer, shape);
-    const light = {
-      ...this.light.uniforms, shadow_map: this.keyLamp.map, to_shadow: this.keyLamp.matrix, sky_light: {value: null},
-    };
-    this.body = new Body(this.deformer, light);
-    this.body.update();
-    this.sky = new SkyLight(this.renderer, this.body.casters);
-    this.body.uniforms.sky_light.value = this.sky.addReceiver(this.deformer.grid.columns, this.deformer.grid.rows,
-      {positions: this.body.uniforms.positions, normals: this.body.uniforms.normals});
-    this.ground = new Ground(this.sky, light);
-    this.scene.add(this.body.mesh, this.ground.mesh);
+    this.casters = new Scene();
+    this.sky = new SkyLight(this.renderer, this.casters);
+    this.body = this.#add(shape);
+    this.ground = new Ground(this.sky, this.#lightUniforms());
+    this.scene.add(this.ground.mesh);
     this.home = {centre: about.low.map((l, k) => (l + about.high[k]) / 2), radius: about.diagonal / 2};
     this.setFloor(null);
     if (!keepCamera) this.frame();
     this.setTheme(this.themeName);
     this.shapeChanged();
+  }
+
+  /** Shows a second shape of the model, which the first ought to be, or none. @param {Shape|null} shape */
+  setReference(shape) {
+    if (this.reference) this.#remove(this.reference);
+    this.reference = null;
+    this.body.uniforms.other.value = null;
+    if (shape) {
+      this.reference = this.#add(shape);
+      this.setTheme(this.themeName);
+    }
+    this.#rearranged();
+  }
+
+  /** Draws the reference as a ghost in the object's place, or at its right. */
+  set overlay(on) {
+    this.overlaid = on;
+    this.frame();
+  }
+
+  /** All that is drawn of the model. */
+  get bodies() {
+    return this.reference ? [this.body, this.reference] : [this.body];
+  }
+
+  /** Their colours. */
+  get colours() {
+    const {object, reference} = THEMES[this.themeName];
+    return [object, reference];
+  }
+
+  get deformer() {
+    return this.body.deformer;
   }
 
   /** Lays the ground at a floor's height, with a grid, or under the object at rest, without. */
@@ -103,7 +135,7 @@ export class Stage {
 
   /** Whether the last picture is as good as it gets. */
   get settled() {
-    return this.unsettled <= 0 && this.quality.shown === 1 && !this.request;
+    return this.unsettled <= 0 && this.quality.fine && !this.request;
   }
 
   invalidate() {
@@ -112,7 +144,8 @@ export class Stage {
 
   /** Moves the camera so that the object as it is now fills the view. */
   frame() {
-    const {centre, radius} = this.extent = this.shape.extent();
+    this.#arrange();
+    const {centre, radius, height} = this.extent = this.#extentOfAll();
     const centreOfView = new Vector3(...centre);
     const right = this.up.x === 1 ? new Vector3(0, 1, 0) : new Vector3(1, 0, 0);
     const front = new Vector3().crossVectors(right, this.up);
@@ -121,8 +154,8 @@ export class Stage {
       : front.multiplyScalar(Math.cos(rad(AZIMUTH))).addScaledVector(right, Math.sin(rad(AZIMUTH)))
           .multiplyScalar(Math.cos(rad(ELEVATION))).addScaledVector(this.up, Math.sin(rad(ELEVATION)));
     this.framed = true;
-    const narrow = Math.min(1, (this.parent.clientWidth - this.inset) / this.parent.clientHeight);
-    const distance = radius / Math.sin(rad(FIELD_OF_VIEW / 2)) / narrow;
+    const {clientWidth: across, clientHeight: along} = this.parent, {right: covered, bottom} = this.inset;
+    const distance = Math.max(height / (along - bottom), radius / (across - covered)) * along / Math.sin(rad(FIELD_OF_VIEW / 2));
     this.controls.target.copy(centreOfView);
     this.camera.position.copy(centreOfView).addScaledVector(away, distance);
     this.controls.minDistance = 0.02 * radius;
@@ -131,10 +164,10 @@ export class Stage {
     this.invalidate();
   }
 
-  /** Keeps the object's middle clear of what covers so many pixels at the right. */
-  setInset(right) {
-    if (right === this.inset) return;
-    this.inset = right;
+  /** Keeps the object's middle clear of what covers so many pixels at the right and at the bottom. */
+  setInset(right, bottom) {
+    if (right === this.inset.right && bottom === this.inset.bottom) return;
+    this.inset = {right, bottom};
     this.#resize();
   }
 
@@ -154,12 +187,19 @@ export class Stage {
     this.background.material.uniforms.top.value.set(theme.top);
     this.background.material.uniforms.bottom.value.set(theme.bottom);
     if (this.body) {
-      this.body.uniforms.albedo.value.set(theme.object);
-      this.body.lineColour.value.set(theme.lines).convertLinearToSRGB();
+      this.bodies.forEach(({uniforms, lineColour}, k) => {
+        uniforms.albedo.value.set(this.colours[k]);
+        lineColour.value.set(theme.lines).convertLinearToSRGB();
+      });
       this.ground.uniforms.line_colour.value.set(theme.grid).convertLinearToSRGB();
       this.ground.uniforms.strength.value = theme.shadow;
     }
     this.invalidate();
+  }
+
+  /** A point on the ground under the object, when that is shifted. @param {Vector3} shift */
+  under(shift) {
+    return new Vector3(...this.home.centre).setComponent(this.axis, this.groundHeight).add(shift).toArray();
   }
 
   /** The ray from the eye through a point of the page. */
@@ -202,7 +242,7 @@ export class Stage {
   #draw(time) {
     if (!this.body) return;
     for (const call of this.beforeDrawing) call(time);
-    if (this.moved) this.body.update();
+    if (this.moved) this.#update();
     this.#light();
     this.renderer.render(this.scene, this.camera);
     this.counters.drawn++;
@@ -210,13 +250,82 @@ export class Stage {
     for (const call of this.afterDrawing) call(time);
   }
 
+  #add(shape) {
+    const body = new Body(new Deformer(this.renderer, shape), this.#lightUniforms());
+    body.update();
+    const {columns, rows} = body.deformer.grid, {positions, normals, shift, sky_light} = body.uniforms;
+    sky_light.value = this.sky.addReceiver(columns, rows, {positions, normals, shift});
+    this.scene.add(body.mesh);
+    this.casters.add(body.caster);
+    return body;
+  }
+
+  #remove(body) {
+    this.scene.remove(body.mesh);
+    this.casters.remove(body.caster);
+    this.sky.removeReceiver(body.uniforms.sky_light.value);
+    body.deformer.dispose();
+    body.dispose();
+  }
+
+  #lightUniforms() {
+    return {...this.light.uniforms, shadow_map: this.keyLamp.map, to_shadow: this.keyLamp.matrix, sky_light: {value: null}};
+  }
+
+  #update() {
+    for (const body of this.bodies) body.update();
+    if (!this.reference) return;
+    this.body.uniforms.other.value = this.reference.deformer.positions;
+    this.reference.uniforms.other.value = this.body.deformer.positions;
+  }
+
+  /** Puts the reference in its place: at the right, along the axis that lies most across the view, or where the object is. */
+  #arrange() {
+    const {reference, overlaid} = this;
+    if (!reference) return;
+    reference.ghost = overlaid;
+    reference.caster.visible = !overlaid;
+    reference.shift.set(0, 0, 0);
+    this.#rearranged();
+    if (overlaid) return;
+    const {low, high, diagonal} = this.shape.model.about, right = this.#right().toArray();
+    const axis = [0, 1, 2].reduce((a, b) => (Math.abs(right[b]) > Math.abs(right[a]) ? b : a));
+    reference.shift.setComponent(axis, Math.sign(right[axis]) * (high[axis] - low[axis] + GAP * diagonal));
+  }
+
+  #rearranged() {
+    this.sky.restart();
+    this.shapeChanged();
+  }
+
+  /** A ball around all shapes, the radius of one, and the largest displacement. */
+  #extentOfAll() {
+    const [first, second] = this.bodies.map(({shape, shift}) => {
+      const {centre, ...extent} = shape.extent();
+      return {centre: new Vector3(...centre).add(shift), ...extent};
+    });
+    if (!second) return {...first, centre: first.centre.toArray(), height: first.radius};
+    const height = Math.max(first.radius, second.radius);
+    return {
+      centre: first.centre.clone().lerp(second.centre, 0.5).toArray(),
+      radius: first.centre.distanceTo(second.centre) / 2 + height,
+      height,
+      displacement: Math.max(first.displacement, second.displacement),
+    };
+  }
+
+  /** What lies to the right of the camera, level. */
+  #right() {
+    this.camera.updateMatrixWorld();
+    const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
+    return right.addScaledVector(this.up, -right.dot(this.up)).normalize();
+  }
+
   #light() {
     const {renderer, camera} = this;
-    camera.updateMatrixWorld();
-    const right = new Vector3().setFromMatrixColumn(camera.matrixWorld, 0);
-    this.light.turn(right.addScaledVector(this.up, -right.dot(this.up)).normalize(), this.up);
+    this.light.turn(this.#right(), this.up);
     if (this.moved) {
-      const {centre, radius} = this.extent = this.shape.extent();
+      const {centre, radius} = this.extent = this.#extentOfAll();
       this.ball = {centre, radius: 1.15 * radius};
     }
     this.light.uniforms.scene_radius.value = this.ball.radius;
@@ -239,7 +348,7 @@ export class Stage {
     if (!this.shadowsLag || waits) return;
     this.shadowsLag = false;
     keyLamp.aim(towards, this.ball);
-    keyLamp.look(renderer, this.body.casters);
+    keyLamp.look(renderer, this.casters);
     this.ground.update(renderer);
   }
 
@@ -248,15 +357,18 @@ export class Stage {
     if (width === 0 || height === 0) return;
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
-    this.camera.setViewOffset(width, height, this.inset / 2, 0, width, height);
-    if (this.body) this.drawNow();  // or the canvas would be blank until the next picture
+    this.camera.setViewOffset(width, height, this.inset.right / 2, this.inset.bottom / 2, width, height);
+    if (!this.body) return;
+    this.#draw(performance.now());  // or the canvas would be blank until the next picture
+    this.invalidate();
   }
 
   #clear() {
     if (!this.body) return;
-    this.scene.remove(this.body.mesh, this.ground.mesh);
-    for (const thing of [this.body, this.deformer, this.sky, this.ground]) thing.dispose();
-    this.body = null;
+    for (const body of this.bodies) this.#remove(body);
+    this.scene.remove(this.ground.mesh);
+    for (const thing of [this.sky, this.ground]) thing.dispose();
+    this.body = this.reference = null;
   }
 }
 

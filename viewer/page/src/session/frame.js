@@ -14,18 +14,19 @@
  * @property {number} microseconds    that the last step or solve took
  * @property {number} stepsPerSecond
  * @property {number} realTime        session time over wall-clock time
- * @property {number} estimate        of the error, or NaN
+ * @property {number} estimate        of the error; in a replay what it is measured to be; or NaN
  * @property {boolean} playing
  * @property {boolean} behind         cannot keep up with the wall clock
  * @property {boolean} unconverged    the last step missed its tolerance
  * @property {boolean} untrained      the pose is beyond what the estimate was trained on
  * @property {number} steps
  * @property {Float32Array} values
+ * @property {Float32Array|null} reference   x − X of a second recording, which the first ought to be
  */
 
 export const HEADER_BYTES = 96;
 
-const COORDINATES = 1, POSITIONS = 2;
+const COORDINATES = 1, POSITIONS = 2, BOTH = 3;
 const PLAYING = 1, BEHIND = 2, UNCONVERGED = 4, UNTRAINED = 8;
 
 /**
@@ -40,9 +41,10 @@ export function parseFrame(buffer) {
   const f32 = (offset) => view.getFloat32(offset, true);
   const f64 = (offset) => view.getFloat64(offset, true);
   const kind = u32(0), count = u32(76), bits = u32(72);
-  if (kind !== COORDINATES && kind !== POSITIONS) throw new RangeError(`a frame of unknown kind ${kind}`);
+  if (![COORDINATES, POSITIONS, BOTH].includes(kind)) throw new RangeError(`a frame of unknown kind ${kind}`);
   if (buffer.byteLength !== HEADER_BYTES + 4 * count)
     throw new RangeError(`a frame of ${buffer.byteLength} bytes announces ${count} numbers`);
+  const values = new Float32Array(buffer, HEADER_BYTES, count), half = count / 2;
   return {
     kind: kind === COORDINATES ? 'coordinates' : 'positions',
     number: u32(4),
@@ -62,6 +64,7 @@ export function parseFrame(buffer) {
     unconverged: (bits & UNCONVERGED) !== 0,
     untrained: (bits & UNTRAINED) !== 0,
     steps: u32(80),
-    values: new Float32Array(buffer, HEADER_BYTES, count),
+    values: kind === BOTH ? values.subarray(0, half) : values,
+    reference: kind === BOTH ? values.subarray(half) : null,
   };
 }

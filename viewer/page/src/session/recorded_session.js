@@ -72,7 +72,7 @@ export class RecordedSession extends EventTarget {
 
   #tell() {
     this.#emit('state', {
-      mode: 'simulate', playing: this.playing, settings: {speed: this.speed}, handles: [], pulls: [], fixed: [],
+      mode: 'replay', playing: this.playing, settings: {speed: this.speed}, handles: [], pulls: [], fixed: [],
       can_undo: false, can_redo: false,
     });
   }

@@ -52,6 +52,10 @@ export class BoxTool {
     });
   }
 
+  cancel() {
+    this.frame.remove();
+  }
+
   end(event) {
     this.frame.remove();
     const {stage} = this.app, area = stage.canvas.getBoundingClientRect();
