@@ -12,6 +12,9 @@ namespace supple {
 Replay::Replay(std::shared_ptr<const ViewModel> model) : model_(std::move(model)) {
   std::tie(begin_, end_) = common_time(model_->recordings);
   time_ = begin_;
+  if (num_recordings() < 2) return;
+  const ViewRecording& reference = model_->recordings[1];
+  reference_size_ = reference.frames.cast<double>().norm() / std::sqrt(static_cast<double>(reference.num_frames()));
 }
 
 void Replay::seek(double time) {
@@ -47,11 +50,8 @@ ViewGeometry::Floats Replay::displacements(Index which) const {
 }
 
 double Replay::difference() const {
-  if (num_recordings() < 2) return std::numeric_limits<double>::quiet_NaN();
-  const ViewGeometry::Floats reference = displacements(1);
-  const double size = reference.cast<double>().norm();
-  return size > 0 ? (displacements(0) - reference).cast<double>().norm() / size
-                  : std::numeric_limits<double>::quiet_NaN();
+  if (!(reference_size_ > 0)) return std::numeric_limits<double>::quiet_NaN();
+  return (displacements(0) - displacements(1)).cast<double>().norm() / reference_size_;
 }
 
 }  // namespace supple

@@ -32,13 +32,15 @@ class Replay {
 
   /// x − X of the surface's nodes at this time, one a row [m]. \param which  recording: 0, or 1 for the reference.
   ViewGeometry::Floats displacements(Index which) const;
-  /// Distance of the first from the second at this time, over the second: both root mean squares over the surface's nodes.
-  /// NaN where there is no second, or where it is at rest.
+  /// Distance of the first from the second at this time over the second's displacement, both root mean squares over the
+  /// surface's nodes, the latter over all its frames, too: it would vanish wherever an object swings through rest. NaN where
+  /// there is no second, or where it never moves.
   double difference() const;
 
  private:
   std::shared_ptr<const ViewModel> model_;
   double begin_ = 0, end_ = 0, time_ = 0;  // [s]
+  double reference_size_ = 0;              // ‖u‖ of the second, rms over its frames [m]
 };
 
 }  // namespace supple
