@@ -39,11 +39,11 @@ TimeSpan read_span(const JsonFields& fields) {
   return span;
 }
 
-TimedSprings read_springs(const JsonFields& fields, const Body& body) {
+TimedSprings read_springs(const JsonFields& fields, const Body& body, std::vector<std::string>& warnings) {
   TimedSprings result;
   const double stiffness = fields.number("stiffness", positive, "N/m");
   const NodeShares nodes = read_nodes(fields, body);
-  if (const auto note = held_nodes_note(fields, nodes, body, "spring")) warn(*note);
+  if (const auto note = held_nodes_note(fields, nodes, body, "spring")) warnings.push_back(*note);
   for (const auto& [node, share] : nodes) result.springs.emplace_back(node, share * stiffness);
   result.when = read_span(fields);
   const bool target = fields.contains("target"), displacement = fields.contains("displacement"),
@@ -77,6 +77,7 @@ TimedSprings read_springs(const JsonFields& fields, const Body& body) {
 Scene read_scene(const std::filesystem::path& path, const Body& body) {
   const JsonFields file = JsonFields::read(path);
   Scene scene;
+  std::vector<std::string> warnings;
   scene.description = file.text_or("description", path.filename().string());
   if (file.contains("duration")) scene.duration = file.number("duration", positive, "s");
   if (file.contains("step")) scene.step = file.number("step", positive, "s");
@@ -90,11 +91,12 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
     TimedLoads timed{{}, read_span(fields)};
     const Point force = fields.point("force", "N");
     const NodeShares nodes = read_nodes(fields, body);
-    if (const auto note = held_nodes_note(fields, nodes, body, "force")) warn(*note);
+    if (const auto note = held_nodes_note(fields, nodes, body, "force")) warnings.push_back(*note);
     for (const auto& [node, share] : nodes) timed.loads.forces.push_back({node, share * force});
     scene.loads.push_back(std::move(timed));
   }
-  for (const JsonFields& fields : file.objects_if("springs")) scene.springs.push_back(read_springs(fields, body));
+  for (const JsonFields& fields : file.objects_if("springs"))
+    scene.springs.push_back(read_springs(fields, body, warnings));
 
   for (const JsonFields& fields : file.objects_if("outside")) {
     TimeSpan when;
@@ -136,6 +138,7 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
       }
   }
   file.finish();
+  for (const std::string& warning : warnings) warn(warning);  // of a scene that is taken
   return scene;
 }
 

@@ -52,9 +52,9 @@ const std::vector<Decision>& decisions() {
       read("fmt_sparse_tags_41.msh"), read("fmt_physical_groups.msh"), read("fmt_medit.mesh"),
       read("fmt_medit_triangles_first.mesh"), read("fmt_medit_crlf.mesh"), read("fmt_medit_onetoken.mesh"),
       read("fmt_22_crlf.msh"), read("fmt_22_comments.msh"), read("fmt_1based"), read("fmt_0based"),
-      read("fmt_tetgen_attrs"), read("fmt_vega.veg", {"material BODY are not read"}), read("fmt_legacy_ascii.vtk"),
-      read("fmt_legacy_bin.vtk"), read("fmt_ascii.vtu"), read("fmt_base64.vtu"), read("fmt_zlib.vtu"),
-      read("fmt_appended.vtu"), read("fmt_appended_zlib.vtu"),
+      read("fmt_tetgen_attrs"), read("fmt_vega.veg"), read("fmt_legacy_ascii.vtk"), read("fmt_legacy_bin.vtk"),
+      read("fmt_ascii.vtu"), read("fmt_base64.vtu"), read("fmt_zlib.vtu"), read("fmt_appended.vtu"),
+      read("fmt_appended_zlib.vtu"),
       // Scale, place and shape: nothing is judged by absolute sizes.
       read("scale_offset1e6.msh"), read("scale_tiny1e-6.msh", {}, 1e-18), read("scale_huge1e6.msh", {}, 1e18),
       read("scale_anisotropic.msh", {"nearly flat tets"}, 10), read("scale_rotated.msh"),
