@@ -48,6 +48,8 @@ std::vector<Index> tracked_nodes(const std::vector<Index>& places_to_track, cons
 SimulationOptions decide(const SimulateCommand& command, const ReducedModel& model, Scene& scene) {
   if (command.time) scene.duration = option_quantity("--time", *command.time, "s");
   if (command.step) scene.step = option_quantity("--step", *command.step, "s");
+  if (command.time && !command.step && !command.scene)  // nobody has asked for a longer step
+    scene.step = std::min(*scene.step, *scene.duration);
   if (command.solver) scene.solver = solver_named(step_solvers, *command.solver);
   if (command.tolerance) scene.tolerance = *command.tolerance;
   if (command.halvings) scene.max_halvings = *command.halvings;

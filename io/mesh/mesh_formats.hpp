@@ -44,8 +44,7 @@ void order_mid_edges(FileMesh& mesh, const Cursor& in);
 void read_gmsh(Cursor& in, FileMesh& mesh);
 void read_medit(Cursor& in, FileMesh& mesh);
 void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh);
-/// \param text  with what it includes, see vega_with_includes().
-void read_vega(Cursor& in, FileMesh& mesh);
+void read_vega(Cursor& in, FileMesh& mesh);  ///< \pre the text is one of vega_with_includes()
 /// The text of a file, and those that its lines *INCLUDE name, in their place, relative to the file.
 std::string vega_with_includes(const std::filesystem::path& path, std::string_view text);
 void read_legacy_vtk(Cursor& in, FileMesh& mesh);

@@ -1,9 +1,10 @@
 # Compiles models that are wrong on purpose, and fails unless the compiler's first error is the sentence in the first
-# line of the file. Run as: cmake -DCOMPILER=... -DINCLUDE=<source> -DEIGEN=<folder> -DSOURCES=<folder> -P concept_messages.cmake
+# line of the file. Run as: cmake -DCOMPILER=... -DINCLUDE=<source> -DEIGEN=<folder> -DDEFINITIONS=<of Supple> -DSOURCES=<folder> -P concept_messages.cmake
 cmake_minimum_required(VERSION 3.25)
 
+list(TRANSFORM DEFINITIONS PREPEND -D)
 function(compile source code errors)
-  execute_process(COMMAND ${COMPILER} -std=c++20 -fsyntax-only -I${INCLUDE} -isystem ${EIGEN} ${source}
+  execute_process(COMMAND ${COMPILER} -std=c++20 -fsyntax-only ${DEFINITIONS} -I${INCLUDE} -isystem ${EIGEN} ${source}
     RESULT_VARIABLE result ERROR_VARIABLE messages OUTPUT_QUIET)
   set(${code} ${result} PARENT_SCOPE)
   set(${errors} "${messages}" PARENT_SCOPE)

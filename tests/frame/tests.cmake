@@ -18,6 +18,7 @@ set_tests_properties(frame.code_is_formatted PROPERTIES LABELS unit SKIP_REGULAR
 add_test(NAME frame.concepts_fail_in_words
   COMMAND ${CMAKE_COMMAND} -DCOMPILER=${CMAKE_CXX_COMPILER} -DINCLUDE=${PROJECT_SOURCE_DIR}
           -DEIGEN=$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>
+          "-DDEFINITIONS=$<TARGET_PROPERTY:supple_core,INTERFACE_COMPILE_DEFINITIONS>"
           -DSOURCES=${CMAKE_CURRENT_LIST_DIR}/wrong -P ${CMAKE_CURRENT_LIST_DIR}/concept_messages.cmake)
 set_tests_properties(frame.concepts_fail_in_words PROPERTIES LABELS slow TIMEOUT 1200)
 
