@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -149,6 +150,12 @@ class GmshReader {
     }
   }
 
+  /// The group of a physical tag, which is negative where elements are turned over.
+  static int group_of(std::int64_t physical) {
+    constexpr std::int64_t most = std::numeric_limits<int>::max();
+    return static_cast<int>(std::abs(std::clamp(physical, -most, most)));
+  }
+
   void read_entities() {
     for_each_entity([](int, std::int64_t) {});
   }
@@ -181,7 +188,7 @@ class GmshReader {
         const Index num_physical = count("physical tags", 2, 4);
         for (Index j = 0; j < num_physical; ++j) {
           const std::int64_t physical = integer("a physical tag");
-          if (dim == 3) physical_of_entity_[tag].insert(static_cast<int>(std::abs(physical)));
+          if (dim == 3) physical_of_entity_[tag].insert(group_of(physical));
         }
         const Index num_bounding = dim == 0 ? 0 : count("bounding entities", 2, 4);
         for (Index j = 0; j < num_bounding; ++j) integer("a bounding entity");
@@ -317,7 +324,7 @@ class GmshReader {
         mesh_.num_higher += type.num_nodes > 4;
       }
       mesh_.numbers.cell.push_back(number);
-      physical_.push_back(static_cast<int>(std::abs(physical)));
+      physical_.push_back(group_of(physical));
       entity_.push_back(static_cast<int>(entity));
     } else if (type.dim == 3) {
       ++mesh_.other_solid[type.plural];
@@ -343,17 +350,18 @@ class GmshReader {
     if (std::set<int>(physical_.begin(), physical_.end()).size() < 2) return;
     std::vector<std::size_t> order(cells.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, {}, [&](std::size_t e) { return cells[e]; });
+    const auto nodes = [&](std::size_t e) -> const auto& {
+      return cells[e];
+    };
+    std::ranges::stable_sort(order, {}, nodes);
+    if (std::ranges::adjacent_find(order, {}, nodes) == order.end()) return;
     std::vector<std::set<int>> groups(cells.size());
     std::vector<char> goes(cells.size(), false);
-    bool any = false;
     for (std::size_t k = 0, first = 0; k < order.size(); ++k) {
       if (cells[order[k]] != cells[order[first]]) first = k;
       goes[order[k]] = k > first && !groups[order[first]].contains(physical_[order[k]]);
-      any |= goes[order[k]] != 0;
       groups[order[first]].insert(physical_[order[k]]);
     }
-    if (!any) return;
     std::size_t kept = 0;
     for (std::size_t e = 0; e < cells.size(); ++e) {
       if (goes[e]) continue;
