@@ -53,6 +53,22 @@ TEST(MessagesTest, RefusesMoreNodesThanThereAre) {
   EXPECT_THROW((void)fix(model->geometry.num_nodes() + 1), Refusal);
 }
 
+TEST(MessagesTest, RefusesMoreForcesThanHandlesBeforeItReadsThem) {
+  const auto model = clamped_view_model();
+  const auto load = [&](std::size_t count) {
+    const json force{{"nodes", "x>50%"}, {"force", {0, 0, 1}}};
+    return read_message(json{{"do", "load"},
+                             {"scene",
+                              {{"handles", json::array({json{{"name", "a"}, {"nodes", "x>90%"}}})},
+                               {"forces", std::vector<json>(count, force)},
+                               {"edits", json::array({json{{"moves", json::array()}}})}}}}
+                            .dump(),
+                        *model);
+  };
+  EXPECT_NO_THROW((void)load(EditSession::most_handles));
+  EXPECT_THROW((void)load(EditSession::most_handles + 1), Refusal);
+}
+
 TEST(MessagesTest, TellsRefusedMessagesFromNone) {
   const auto model = clamped_view_model();
   for (const std::string& text :

@@ -70,10 +70,13 @@ Pull pull_of(const JsonFields& fields) {
 
 EditScene scene_of(const JsonFields& fields, const ViewModel& model) {
   const JsonFields scene = fields.object("scene");
-  const std::size_t count = scene.objects("handles").size();
-  if (count > EditSession::most_handles)  // before any of them is read
-    scene.fail("handles",
-               "has " + std::to_string(count) + ", expected at most " + std::to_string(EditSession::most_handles));
+  // Before any of them is read: each may name all nodes, and a spring on every node has a dense row for each.
+  for (const char* key : {"handles", "forces"})
+    if (const std::size_t count = scene.objects_if(key).size(); count > EditSession::most_handles)
+      scene.fail(key,
+                 "has " + std::to_string(count) + ", expected at most " + std::to_string(EditSession::most_handles));
+  for (const char* key : {"springs", "outside"})
+    if (scene.contains(key)) scene.fail(key, "is not taken from clients");
   return read_edit_scene(scene, model.model.body);
 }
 
