@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -27,9 +28,13 @@ struct alignas(64) Pack {
 
   /// p points to eight doubles, aligned to 64 bytes.
   static Pack load(const double* p) { return {*reinterpret_cast<const Aliased*>(p)}; }
-  static Pack load_unaligned(const double* p) { return {Lanes(*reinterpret_cast<const Unaligned*>(p))}; }
+  static Pack load_unaligned(const double* p) {
+    Pack result;
+    std::memcpy(&result.lanes, p, sizeof(Lanes));
+    return result;
+  }
   void store(double* p) const { *reinterpret_cast<Aliased*>(p) = lanes; }
-  void store_unaligned(double* p) const { *reinterpret_cast<Unaligned*>(p) = lanes; }
+  void store_unaligned(double* p) const { std::memcpy(p, &lanes, sizeof(Lanes)); }
 
   double operator[](int lane) const { return lanes[lane]; }
   void set(int lane, double value) { lanes[lane] = value; }
@@ -62,7 +67,6 @@ struct alignas(64) Pack {
 
  private:
   using Aliased = double __attribute__((vector_size(size * sizeof(double)), may_alias));
-  using Unaligned = double __attribute__((vector_size(size * sizeof(double)), may_alias, aligned(8)));
 };
 
 /// f in every lane.

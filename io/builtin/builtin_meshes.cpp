@@ -109,14 +109,15 @@ TetMesh octopus(const BuiltinSpec& spec) {
                           1 / static_cast<double>(cells));
 }
 
-struct Builtin {
+struct BuiltinMesh {
   std::string_view name;
   TetMesh (*make)(const BuiltinSpec&);
 };
-constexpr Builtin builtins[] = {{"bar", bar}, {"cube", cube}, {"menger", menger}, {"ball", ball}, {"octopus", octopus}};
+constexpr BuiltinMesh known_meshes[] = {
+    {"bar", bar}, {"cube", cube}, {"menger", menger}, {"ball", ball}, {"octopus", octopus}};
 
-const Builtin* find_builtin(std::string_view name) {
-  for (const Builtin& builtin : builtins)
+const BuiltinMesh* find_mesh(std::string_view name) {
+  for (const BuiltinMesh& builtin : known_meshes)
     if (builtin.name == name) return &builtin;
   return nullptr;
 }
@@ -135,12 +136,12 @@ HexMesh hexbox(const BuiltinSpec& spec) {
 
 bool is_builtin(std::string_view text) {
   const std::string_view name = BuiltinSpec(text).name;
-  return find_builtin(name) || name == hexahedral || name == quadratic;
+  return find_mesh(name) || name == hexahedral || name == quadratic;
 }
 
 TetMesh builtin_mesh(std::string_view text) {
   const BuiltinSpec spec(text);
-  const Builtin* builtin = find_builtin(spec.name);
+  const BuiltinMesh* builtin = find_mesh(spec.name);
   if (!builtin) spec.fail("is no built-in mesh of tets; expected one of\n" + std::string(builtin_mesh_help));
   return builtin->make(spec);
 }
@@ -149,7 +150,7 @@ SolidMesh builtin_solid_mesh(std::string_view text) {
   const BuiltinSpec spec(text);
   if (spec.name == hexahedral) return hexbox(spec);
   if (spec.name != quadratic) return builtin_mesh(text);
-  if (!find_builtin(BuiltinSpec(spec.parameters).name))
+  if (!find_mesh(BuiltinSpec(spec.parameters).name))
     spec.fail("expected tet10: and a built-in mesh of tets, such as tet10:bar:20x5x5");
   return quadratic_mesh(builtin_mesh(spec.parameters));
 }

@@ -140,14 +140,14 @@ TriangleMesh sphere(const BuiltinSpec& spec) {
   return mesh;
 }
 
-struct Builtin {
+struct BuiltinSurface {
   std::string_view name;
   TriangleMesh (*make)(const BuiltinSpec&);
 };
-constexpr Builtin builtins[] = {{"plate", plate}, {"cylinder", cylinder}, {"sphere", sphere}};
+constexpr BuiltinSurface known_surfaces[] = {{"plate", plate}, {"cylinder", cylinder}, {"sphere", sphere}};
 
-const Builtin* find_builtin(std::string_view name) {
-  for (const Builtin& builtin : builtins)
+const BuiltinSurface* find_surface(std::string_view name) {
+  for (const BuiltinSurface& builtin : known_surfaces)
     if (builtin.name == name) return &builtin;
   return nullptr;
 }
@@ -155,12 +155,12 @@ const Builtin* find_builtin(std::string_view name) {
 }  // namespace
 
 bool is_builtin_surface(std::string_view text) {
-  return find_builtin(BuiltinSpec(text).name) != nullptr;
+  return find_surface(BuiltinSpec(text).name) != nullptr;
 }
 
 TriangleMesh builtin_surface(std::string_view text) {
   const BuiltinSpec spec(text);
-  const Builtin* builtin = find_builtin(spec.name);
+  const BuiltinSurface* builtin = find_surface(spec.name);
   if (!builtin) spec.fail("is no built-in surface; expected one of\n" + std::string(builtin_surface_help));
   return builtin->make(spec);
 }

@@ -3,6 +3,7 @@
 #include <numerics/eigen/eigensolver.hpp>
 #include <numerics/eigen/zero_modes.hpp>
 #include <numerics/linear/single_threaded_blas.hpp>
+#include <numerics/linear/symmetric_eigen.hpp>
 
 #include <AnasaziBasicEigenproblem.hpp>
 #include <AnasaziBlockKrylovSchurSolMgr.hpp>
@@ -120,10 +121,7 @@ StandardProblem standard_problem(const SparseMatrix& K, const Vector& M_diagonal
   return problem;
 }
 
-struct Pairs {
-  Vector values;
-  Matrix vectors;
-};
+using Pairs = SymmetricEigen;
 
 /// X minus its part in span(Q), twice for full accuracy.
 void project_out(const Matrix& Q, Matrix& X) {
@@ -150,10 +148,10 @@ Matrix orthonormalized(Matrix X) {
 Pairs rayleigh_ritz(const SparseMatrix& A, Matrix X) {
   X = orthonormalized(std::move(X));
   const Matrix projected = tall::inner_products(X, product(A, X));
-  const Eigen::SelfAdjointEigenSolver<Matrix> dense(0.5 * (projected + projected.transpose()));
+  const SymmetricEigen dense = symmetric_eigen(0.5 * (projected + projected.transpose()));
   Matrix vectors(X.rows(), X.cols());
-  tall::add_product(1, X, dense.eigenvectors(), 0, vectors);
-  return {dense.eigenvalues(), std::move(vectors)};
+  tall::add_product(1, X, dense.vectors, 0, vectors);
+  return {dense.values, std::move(vectors)};
 }
 
 /// (A + σ I)⁻¹, with σ fitted to the lowest flexible eigenvalue.
@@ -293,15 +291,12 @@ Matrix side_by_side(const Matrix& A, const Matrix& B) {
 
 Pairs dense_pairs(const StandardProblem& problem) {
   const Index n = problem.A.rows(), k = problem.deflated.cols();
-  if (k == 0) {
-    const Eigen::SelfAdjointEigenSolver<Matrix> dense{Matrix(problem.A)};
-    return {dense.eigenvalues(), dense.eigenvectors()};
-  }
+  if (k == 0) return symmetric_eigen(Matrix(problem.A));
   const Eigen::HouseholderQR<Matrix> qr(problem.deflated);
   const Matrix complement = Matrix(qr.householderQ()).rightCols(n - k);
   const Matrix projected = complement.transpose() * (problem.A * complement);
-  const Eigen::SelfAdjointEigenSolver<Matrix> dense(0.5 * (projected + projected.transpose()));
-  return {dense.eigenvalues(), complement * dense.eigenvectors()};
+  const Pairs dense = symmetric_eigen(0.5 * (projected + projected.transpose()));
+  return {dense.values, complement * dense.vectors};
 }
 
 /// The `count` smallest pairs as the largest of the inverse, which a dense solver finds beside any stiff part.
@@ -314,8 +309,7 @@ Pairs dense_pairs_of_inverse(const StandardProblem& problem, const ShiftedInvers
     return X;
   };
   const Matrix B = apply_inverse(Matrix::Identity(n, n));
-  const Eigen::SelfAdjointEigenSolver<Matrix> dense(0.5 * (B + B.transpose()));
-  return rayleigh_ritz(problem.A, apply_inverse(dense.eigenvectors().rightCols(count)));
+  return rayleigh_ritz(problem.A, apply_inverse(symmetric_eigen(0.5 * (B + B.transpose())).vectors.rightCols(count)));
 }
 
 struct SparseResult {

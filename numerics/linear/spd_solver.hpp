@@ -1,11 +1,8 @@
 #pragma once
 /// \file Solver for symmetric positive definite matrices, sparse or dense.
 
-#include <core/check.hpp>
 #include <numerics/linear/cholmod_solver.hpp>
 #include <numerics/linear/matrix_sums.hpp>
-
-#include <Eigen/Cholesky>
 
 namespace supple {
 
@@ -44,18 +41,8 @@ template <>
 class SpdSolver<Matrix> {
  public:
   /// Keeps the inverse: a product with it is several times faster than two triangular solves of this size.
-  [[nodiscard]] bool factorize(const Matrix& A) {
-    inverse_.resize(0, 0);
-    const Eigen::LLT<Matrix> cholesky(A);
-    if (cholesky.info() != Eigen::Success || !A.allFinite()) return false;  // NaN is a success to Eigen
-    inverse_ = cholesky.solve(Matrix::Identity(A.rows(), A.cols()));
-    return true;
-  }
-  Vector solve(VectorIn b) const {
-    require(inverse_.size() > 0, "solve: there is no factorisation");
-    require_size("b", b.size(), inverse_.rows());
-    return inverse_ * b;
-  }
+  [[nodiscard]] bool factorize(const Matrix& A);
+  Vector solve(VectorIn b) const;
 
  private:
   Matrix inverse_;

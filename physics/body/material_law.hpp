@@ -2,10 +2,9 @@
 /// \file Material laws by name: what commands, files and plug-ins choose from.
 
 #include <core/registry.hpp>
+#include <numerics/linear/symmetric_eigen.hpp>
 #include <physics/model/any_model.hpp>
 #include <physics/model/solid_elasticity.hpp>
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -108,8 +107,7 @@ std::string objection_to(const Material<double>& material) {
   const Matrix9<double> C = tangent(material, rest);
   if (!P.allFinite() || !C.allFinite()) return "stress or tangent at rest are not finite";
   if (P.norm() > 1e-9 * C.norm()) return "there is stress at rest";
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(Matrix(C), Eigen::EigenvaluesOnly);
-  if (eigen.eigenvalues()[0] < -1e-9 * C.norm()) return "the rest state is not stable";
+  if (symmetric_eigenvalues(C)[0] < -1e-9 * C.norm()) return "the rest state is not stable";
   if (C.isZero(0)) return "it resists nothing";
   return "";
 }

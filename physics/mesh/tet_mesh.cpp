@@ -11,21 +11,21 @@ namespace supple {
 
 namespace {
 
-struct EdgeVectors {
+struct TetEdges {
   Point ab, ac, ad;
-  EdgeVectors(const Points& nodes, const Tet& tet) {
+  TetEdges(const Points& nodes, const Tet& tet) {
     const Point a = nodes.row(tet[0]);
     ab = nodes.row(tet[1]).transpose() - a;
     ac = nodes.row(tet[2]).transpose() - a;
     ad = nodes.row(tet[3]).transpose() - a;
   }
-  EdgeVectors(const TetMesh& mesh, Index e) : EdgeVectors(mesh.nodes, mesh.cells[e]) {}
+  TetEdges(const TetMesh& mesh, Index e) : TetEdges(mesh.nodes, mesh.cells[e]) {}
 };
 
 }  // namespace
 
 double tet_volume(const TetMesh& mesh, Index e) {
-  const EdgeVectors tet(mesh, e);
+  const TetEdges tet(mesh, e);
   return tet.ab.cross(tet.ac).dot(tet.ad) / 6;
 }
 
@@ -34,7 +34,7 @@ TetShape tet_shape(const TetMesh& mesh, Index e) {
     if (v < 0 || v >= mesh.num_nodes())
       throw std::invalid_argument("tet " + std::to_string(e) + " names node " + std::to_string(v) + ", expected 0 to " +
                                   std::to_string(mesh.num_nodes() - 1));
-  const EdgeVectors tet(mesh, e);
+  const TetEdges tet(mesh, e);
   Matrix3<double> edges;
   edges << tet.ab, tet.ac, tet.ad;
   const double volume = edges.determinant() / 6;
@@ -43,7 +43,7 @@ TetShape tet_shape(const TetMesh& mesh, Index e) {
 }
 
 int tet_orientation(const TetMesh& mesh, Index e) {
-  const EdgeVectors tet(mesh, e);
+  const TetEdges tet(mesh, e);
   const double det = tet.ab.cross(tet.ac).dot(tet.ad);
   const Point b = tet.ab.cwiseAbs(), c = tet.ac.cwiseAbs(), d = tet.ad.cwiseAbs();
   const double permanent =
@@ -57,7 +57,7 @@ double radius_ratio(const TetMesh& mesh, Index e) {
 }
 
 double radius_ratio(const Points& nodes, const Tet& corners) {
-  const EdgeVectors tet(nodes, corners);
+  const TetEdges tet(nodes, corners);
   const Point bc = tet.ab.cross(tet.ac), cd = tet.ac.cross(tet.ad), db = tet.ad.cross(tet.ab);
   const double det = std::abs(bc.dot(tet.ad));  // 6 V
   if (!(det > 0)) return 0;

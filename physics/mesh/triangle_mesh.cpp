@@ -58,9 +58,9 @@ void unite(std::vector<Index>& parent, Index a, Index b) {
   parent[std::max(r, s)] = std::min(r, s);
 }
 
-struct EdgeVectors {
+struct TriangleEdges {
   Point ab, ac;
-  EdgeVectors(const TriangleMesh& mesh, Index t) {
+  TriangleEdges(const TriangleMesh& mesh, Index t) {
     const Triangle& triangle = mesh.triangles[t];
     ab = (mesh.nodes.row(triangle[1]) - mesh.nodes.row(triangle[0])).transpose();
     ac = (mesh.nodes.row(triangle[2]) - mesh.nodes.row(triangle[0])).transpose();
@@ -96,7 +96,7 @@ void check_triangles(const TriangleMesh& mesh, const Names& names) {
   }
   for (Index t = 0; t < mesh.num_triangles(); ++t) {
     const double area = triangle_area(mesh, t);
-    const bool is_flat = EdgeVectors(mesh, t).is_flat();
+    const bool is_flat = TriangleEdges(mesh, t).is_flat();
     if (!std::isfinite(area) || (!is_flat && !(area > 0)))
       throw std::invalid_argument("the area of " + names.triangle(t) + " is beyond the range of numbers");
     if (is_flat) throw std::invalid_argument(names.triangle(t) + " has zero area: its nodes lie in a line");
@@ -128,12 +128,12 @@ void check_edges(const TriangleMesh& mesh, const Names& names) {
 }  // namespace
 
 double triangle_area(const TriangleMesh& mesh, Index t) {
-  const EdgeVectors edges(mesh, t);
+  const TriangleEdges edges(mesh, t);
   return edges.ab.cross(edges.ac).norm() / 2;
 }
 
 double radius_ratio(const TriangleMesh& mesh, Index t) {
-  const EdgeVectors edges(mesh, t);
+  const TriangleEdges edges(mesh, t);
   const double a = edges.ab.norm(), b = edges.ac.norm(), c = (edges.ac - edges.ab).norm();
   const double area = edges.ab.cross(edges.ac).norm() / 2;
   if (!(area > 0)) return 0;

@@ -1,12 +1,11 @@
 #include <core/check.hpp>
 #include <core/random.hpp>
+#include <numerics/linear/symmetric_eigen.hpp>
 #include <reduction/basis/joined_basis.hpp>
 #include <reduction/basis/modal_derivatives.hpp>
 #include <reduction/basis/pca_basis.hpp>
 #include <reduction/basis/skinning_modes.hpp>
 #include <reduction/basis/subspace_library.hpp>
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cctype>
@@ -191,9 +190,8 @@ Index missing_rigid_motions(const RestState& object, const AnyBasis& basis) {
           outside.col(j) = rigid.col(j) - subspace->reconstruct(subspace->project(mass.cwiseProduct(rigid.col(j))));
       },
       basis);
-  const Eigen::SelfAdjointEigenSolver<Matrix> squares(outside.transpose() * mass.asDiagonal() * outside,
-                                                      Eigen::EigenvaluesOnly);
-  return (squares.eigenvalues().array() > 1e-12).count();
+  const Vector squares = symmetric_eigenvalues(outside.transpose() * mass.asDiagonal() * outside);
+  return (squares.array() > 1e-12).count();
 }
 
 AnyBasis build_subspace(const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run) {

@@ -1,7 +1,6 @@
+#include <numerics/linear/symmetric_eigen.hpp>
 #include <reduction/pipeline/training.hpp>
 #include <sparse/selectors/selector_library.hpp>
-
-#include <Eigen/Eigenvalues>
 
 #include <sstream>
 
@@ -88,8 +87,8 @@ FullError full_error_of(const EquilibriumPairs& pairs) {
 }
 
 Vector softest_eigenvalues(const Matrix& stiffness, Index first, Index count) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(stiffness, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues().segment(first, std::min(count, stiffness.rows() - first));
+  const Vector eigenvalues = symmetric_eigenvalues(stiffness);
+  return eigenvalues.segment(first, std::min(count, stiffness.rows() - first));
 }
 
 }  // namespace supple

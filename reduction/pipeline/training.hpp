@@ -1,6 +1,7 @@
 #pragma once
 /// \file Stages of training, from an object in a subspace to the fitting problems of its forces.
 
+#include <numerics/linear/symmetric_eigen.hpp>
 #include <physics/mesh/cell_mesh.hpp>
 #include <physics/system/any_system.hpp>
 #include <physics/system/full_system.hpp>
@@ -168,10 +169,10 @@ Vector Training<Model, S>::with_frequencies(std::span<const Index> indices, cons
   for (int round = 0; round < rounds; ++round) {
     const WorkingComponents working = with_positive_weights(indices, w);
     if (working.indices.empty()) return w;
-    const Eigen::SelfAdjointEigenSolver<Matrix> fitted(object.stiffness_at_rest(working));
-    const Matrix A = weight * exact.cwiseInverse().asDiagonal() *
-                     rest_energies(*object.system, *object.subspace, indices,
-                                   Matrix(fitted.eigenvectors().middleCols(first, count)));
+    const SymmetricEigen fitted = symmetric_eigen(object.stiffness_at_rest(working));
+    const Matrix A =
+        weight * exact.cwiseInverse().asDiagonal() *
+        rest_energies(*object.system, *object.subspace, indices, Matrix(fitted.vectors.middleCols(first, count)));
     const Vector b = Vector::Constant(count, weight);
     w = Fnnls{}(gram + A.transpose() * A, atb + A.transpose() * b, all_positions(w.size())).w;
   }

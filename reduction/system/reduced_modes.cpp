@@ -1,16 +1,14 @@
 #include <numerics/eigen/zero_modes.hpp>
+#include <numerics/linear/symmetric_eigen.hpp>
 #include <reduction/system/reduced_modes.hpp>
-
-#include <Eigen/Eigenvalues>
 
 namespace supple {
 
 ReducedModes reduced_modes(const Matrix& reduced_stiffness, std::optional<Index> num_zero) {
   require(reduced_stiffness.rows() > 0, "the reduced stiffness is empty");
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(reduced_stiffness);
-  if (eigen.info() != Eigen::Success) throw SolverError("eigenvalues of the reduced stiffness did not converge");
-  const Vector eigenvalues = eigen.eigenvalues().cwiseMax(0);
-  ReducedModes modes{eigenvalues.cwiseSqrt(), eigen.eigenvectors(), 0};
+  const SymmetricEigen eigen = symmetric_eigen(reduced_stiffness);
+  const Vector eigenvalues = eigen.values.cwiseMax(0);
+  ReducedModes modes{eigenvalues.cwiseSqrt(), eigen.vectors, 0};
   modes.num_zero =
       num_zero ? *num_zero
                : num_zero_modes(eigenvalues, Vector::Constant(eigenvalues.size(), 1e-10 * eigenvalues.maxCoeff()));

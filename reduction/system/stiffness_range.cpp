@@ -1,8 +1,7 @@
 #include <core/check.hpp>
+#include <numerics/linear/symmetric_eigen.hpp>
 #include <reduction/system/reduced_modes.hpp>
 #include <reduction/system/stiffness_range.hpp>
-
-#include <Eigen/Eigenvalues>
 
 namespace supple {
 
@@ -11,8 +10,8 @@ StiffnessRange stiffness_range(const Matrix& stiffness, const ReducedModes& exac
   const Index flexible = exact.omega.size() - exact.num_zero;
   if (flexible == 0) return {};
   const Matrix U = exact.Phi.rightCols(flexible) * exact.omega.tail(flexible).cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(U.transpose() * stiffness * U, Eigen::EigenvaluesOnly);
-  return {eigen.eigenvalues()[0], eigen.eigenvalues()[flexible - 1]};
+  const Vector eigenvalues = symmetric_eigenvalues(U.transpose() * stiffness * U);
+  return {eigenvalues[0], eigenvalues[flexible - 1]};
 }
 
 }  // namespace supple

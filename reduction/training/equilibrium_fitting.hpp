@@ -1,10 +1,9 @@
 #pragma once
 /// \file Fitting problem where objects come to rest: poses in equilibrium, errors of the force as displacements.
 
+#include <numerics/linear/symmetric_eigen.hpp>
 #include <physics/statics/static_solver.hpp>
 #include <reduction/training/force_fitting.hpp>
-
-#include <Eigen/Eigenvalues>
 
 namespace supple {
 
@@ -149,10 +148,10 @@ class EquilibriumFitting {
 
   /// Lₜ of a tangent at pose t, times the scale (rank × d).
   Matrix displacements(const Matrix& tangent, Index t, Index rank) const {
-    const Eigen::SelfAdjointEigenSolver<Matrix> pairs(tangent);
-    const Vector divisors = pairs.eigenvalues().head(rank).cwiseAbs().cwiseMax(0.25 * softest_);
+    const SymmetricEigen pairs = symmetric_eigen(tangent);
+    const Vector divisors = pairs.values.head(rank).cwiseAbs().cwiseMax(0.25 * softest_);
     return scale_ / poses().col(t).norm() * divisors.cwiseInverse().asDiagonal() *
-           pairs.eigenvectors().leftCols(rank).transpose();
+           pairs.vectors.leftCols(rank).transpose();
   }
 
   void complete() {

@@ -1,3 +1,4 @@
+#include <numerics/linear/symmetric_eigen.hpp>
 #include <reduction/training/indicator_fitting.hpp>
 
 namespace supple {
@@ -7,18 +8,17 @@ OutsideModes outside_modes(const Matrix& remainders, const Vector& sizes, const 
   require_size("sizes", sizes.size(), remainders.cols());
   require_size("mass", mass.size(), remainders.rows());
   const Matrix B = remainders * sizes.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix> gram(B.transpose() * (mass.asDiagonal() * B));
-  const Vector& squared = gram.eigenvalues();  // ascending
-  constexpr double nothing = 1e-12;            // share of the pose, squared: 10⁻⁶ of it
+  const SymmetricEigen gram = symmetric_eigen(B.transpose() * (mass.asDiagonal() * B));
+  const Vector& squared = gram.values;
+  constexpr double nothing = 1e-12;  // share of the pose, squared: 10⁻⁶ of it
   const Index last = squared.size();
   count = std::min<Index>(count, (squared.array() > std::max(nothing, 1e-10 * squared[last - 1])).count());
   if (count == 0) return {Matrix(remainders.rows(), 0), Vector(), Matrix(0, remainders.cols())};
   OutsideModes modes;
-  const Matrix V =
-      B * gram.eigenvectors().rightCols(count) * squared.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix> turned(Matrix(V.transpose() * (K * V)));
-  modes.V = V * turned.eigenvectors();
-  modes.stiffness = turned.eigenvalues();
+  const Matrix V = B * gram.vectors.rightCols(count) * squared.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
+  SymmetricEigen turned = symmetric_eigen(V.transpose() * (K * V));
+  modes.V = V * turned.vectors;
+  modes.stiffness = std::move(turned.values);
   modes.coordinates = modes.V.transpose() * (mass.asDiagonal() * B);
   return modes;
 }

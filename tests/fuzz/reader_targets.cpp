@@ -96,13 +96,13 @@ Target surfaces(const std::string& format) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Node sets, matrices, tables, JSON, pictures
 
-constexpr Index num_nodes = 12;
+constexpr Index num_listed = 12;
 
 Answer read_node_sets(const std::string& bytes, const fs::path& folder) {
-  const Points nodes = Points::Zero(num_nodes, 3);
+  const Points nodes = Points::Zero(num_listed, 3);
   const fs::path path = put(folder / "nodes.txt", bytes);
   const auto demand_nodes = [](const std::vector<Index>& set) {
-    demand(!set.empty() && set.front() >= 0 && set.back() < num_nodes, "a node that does not exist");
+    demand(!set.empty() && set.front() >= 0 && set.back() < num_listed, "a node that does not exist");
     demand(std::ranges::adjacent_find(set, std::greater_equal()) == set.end(), "nodes that do not ascend");
   };
   const Answer set = answer_of(path, [&] { demand_nodes(read_node_set(nodes, path)); });

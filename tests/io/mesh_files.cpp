@@ -1,32 +1,13 @@
+#include <tests/io/file_bytes.hpp>
 #include <tests/io/mesh_files.hpp>
 
 #include <zlib.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cstring>
 #include <fstream>
 
 namespace supple::test {
 namespace {
-
-std::string text(double x) {
-  std::array<char, 32> digits;
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr};
-}
-
-template <typename Number>
-std::string raw(Number value, bool big_endian = false) {
-  std::string bytes(sizeof(Number), '\0');
-  std::memcpy(bytes.data(), &value, sizeof(Number));
-  if (big_endian) std::reverse(bytes.begin(), bytes.end());
-  return bytes;
-}
-
-template <typename Mesh>
-std::string xyz(const Mesh& mesh, Index v) {
-  return text(mesh.nodes(v, 0)) + " " + text(mesh.nodes(v, 1)) + " " + text(mesh.nodes(v, 2));
-}
 
 /// What the formats call a cell of so many nodes.
 struct CellWords {

@@ -1,29 +1,10 @@
+#include <tests/io/file_bytes.hpp>
 #include <tests/io/surface_files.hpp>
 
-#include <algorithm>
 #include <array>
-#include <charconv>
-#include <cstring>
 
 namespace supple::test {
 namespace {
-
-std::string text(double x) {
-  std::array<char, 32> digits;
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr};
-}
-
-template <typename Number>
-std::string raw(Number value, bool big_endian = false) {
-  std::string bytes(sizeof(Number), '\0');
-  std::memcpy(bytes.data(), &value, sizeof(Number));
-  if (big_endian) std::reverse(bytes.begin(), bytes.end());
-  return bytes;
-}
-
-std::string xyz(const TriangleMesh& mesh, Index v) {
-  return text(mesh.nodes(v, 0)) + " " + text(mesh.nodes(v, 1)) + " " + text(mesh.nodes(v, 2));
-}
 
 std::string obj(const TriangleMesh& mesh) {
   std::string s = "# a comment\n";

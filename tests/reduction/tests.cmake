@@ -1,25 +1,14 @@
-supple_test(subspace LABEL unit LINKS supple::reduction 
-  SOURCES reduction/subspace/subspace_test.cpp reduction/subspace/own_structure_test.cpp)
-supple_test(bases LABEL unit LINKS supple::reduction SOURCES reduction/basis/bases_test.cpp)
-supple_test(modal_derivatives LABEL unit LINKS supple::reduction SOURCES reduction/basis/modal_derivatives_test.cpp)
-supple_test(reduced_system LABEL unit LINKS supple::reduction SOURCES reduction/system/reduced_system_test.cpp)
-supple_test(stiffness_range LABEL unit LINKS supple::reduction SOURCES reduction/system/stiffness_range_test.cpp)
-supple_test(force_fitting LABEL unit LINKS supple::reduction SOURCES reduction/training/force_fitting_test.cpp)
-supple_test(equilibrium_fitting LABEL unit LINKS supple::reduction
-  SOURCES reduction/training/equilibrium_fitting_test.cpp)
-supple_test(error_indicator LABEL unit LINKS supple::reduction SOURCES reduction/training/error_indicator_test.cpp)
-supple_test(exact_equilibria LABEL unit LINKS supple::reduction SOURCES reduction/training/exact_equilibria_test.cpp)
-supple_test(relaxation LABEL unit LINKS supple::reduction SOURCES reduction/training/relaxation_test.cpp)
-supple_test(reduce LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/reduce_test.cpp)
-supple_test(sound_models LABEL unit LINKS supple::reduction
-  SOURCES reduction/pipeline/degenerate_objects_test.cpp reduction/pipeline/sound_models_test.cpp
-          reduction/subspace/rigid_motions_test.cpp)
-supple_test(models LABEL unit LINKS supple::reduction
-  SOURCES reduction/pipeline/model_choice_test.cpp reduction/pipeline/model_ladder_test.cpp
-          reduction/pipeline/model_series_test.cpp)
-supple_test(selection_study LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/selection_study_test.cpp)
-supple_test(heat_reduction LABEL unit LINKS supple::reduction SOURCES reduction/pipeline/heat_test.cpp)
-supple_test(editor LABEL unit LINKS supple::reduction SOURCES reduction/editing/editor_test.cpp)
+supple_test(reduction LABEL unit LINKS supple::reduction
+  SOURCES reduction/basis/bases_test.cpp reduction/basis/modal_derivatives_test.cpp reduction/editing/editor_test.cpp
+          reduction/pipeline/degenerate_objects_test.cpp reduction/pipeline/heat_test.cpp
+          reduction/pipeline/model_choice_test.cpp reduction/pipeline/model_ladder_test.cpp
+          reduction/pipeline/model_series_test.cpp reduction/pipeline/reduce_test.cpp
+          reduction/pipeline/selection_study_test.cpp reduction/pipeline/sound_models_test.cpp
+          reduction/subspace/own_structure_test.cpp reduction/subspace/rigid_motions_test.cpp
+          reduction/subspace/subspace_test.cpp reduction/system/reduced_system_test.cpp
+          reduction/system/stiffness_range_test.cpp reduction/training/equilibrium_fitting_test.cpp
+          reduction/training/error_indicator_test.cpp reduction/training/exact_equilibria_test.cpp
+          reduction/training/force_fitting_test.cpp reduction/training/relaxation_test.cpp)
 
 if(TARGET gent_plugin)  # an example
   foreach(plugin no_plugin other_version twice)

@@ -1,8 +1,5 @@
-supple_test(fitting_problem QUICK LABEL unit LINKS supple::sparse SOURCES sparse/problem/fitting_problem_test.cpp)
-supple_test(stacked_problem QUICK LABEL unit LINKS supple::sparse SOURCES sparse/problem/stacked_problem_test.cpp)
-supple_test(nnls LABEL unit LINKS supple::sparse SOURCES sparse/nnls/nnls_test.cpp)
-supple_test(nnls_adversarial LABEL unit LINKS supple::sparse SOURCES sparse/nnls/nnls_adversarial_test.cpp)
-supple_test(pruning QUICK LABEL unit LINKS supple::sparse SOURCES sparse/nnls/pruning_test.cpp)
-supple_test(exchanging QUICK LABEL unit LINKS supple::sparse SOURCES sparse/selectors/exchanging_test.cpp)
-supple_test(nn_htp QUICK LABEL unit LINKS supple::sparse SOURCES sparse/selectors/nn_htp_test.cpp)
+supple_test(sparse QUICK LABEL unit LINKS supple::sparse
+  SOURCES sparse/nnls/pruning_test.cpp sparse/problem/fitting_problem_test.cpp sparse/problem/stacked_problem_test.cpp
+          sparse/selectors/exchanging_test.cpp sparse/selectors/nn_htp_test.cpp)
+supple_test(nnls LABEL unit LINKS supple::sparse SOURCES sparse/nnls/nnls_adversarial_test.cpp sparse/nnls/nnls_test.cpp)
 supple_test(selectors OPTIMIZED LABEL unit LINKS supple::sparse SOURCES sparse/selectors/selectors_test.cpp)

@@ -11,6 +11,8 @@
 
 namespace supple::test {
 
+inline constexpr IsotropicModuli rubber{.young = 1e5, .poisson = 0.35};
+
 /// A box of cells, `cells` along each axis of its extent, nodes not moved yet.
 template <typename Element>
 CellMesh<Element::num_nodes> box_of(const std::array<Index, 3>& cells, double edge) {

@@ -10,7 +10,7 @@ namespace supple {
 namespace {
 
 constexpr std::size_t most_moments = 1000, most_edits = 1000;
-constexpr double reach = 100;                           // how far a handle may go, in diagonals
+constexpr double reach_of_handles = 100;                // how far a handle may go, in diagonals
 constexpr double turn_at_once = std::numbers::pi / 12;  // of a handle in a solve [rad]
 constexpr double way_at_once = 0.05;                    // of its centre, in diagonals
 constexpr int most_attempts = 20;                       // solves that go on where the last one ended
@@ -77,7 +77,7 @@ EditHandle& EditSession::handle(Index id) {
 void EditSession::move(Index id, const RigidMotion& motion, Grab grab) {
   EditHandle& moved = handle(id);
   require(moved.region->movable, "handle '" + moved.region->name + "' is not movable");
-  require((motion(moved.centre) - moved.centre).norm() <= reach * model_->diagonal,  // false for NaN
+  require((motion(moved.centre) - moved.centre).norm() <= reach_of_handles * model_->diagonal,  // false for NaN
           "the motion leads more than 100 diagonals away");
   if (grab == Grab::Yes) remember();
   moved.motion = motion;

@@ -13,10 +13,9 @@ namespace supple {
 
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr Index most_held = 100;                   // springs
 constexpr Index most_on_floor = 200;               // nodes: their rows of the basis are read in every evaluation
-constexpr double reach = 100;                      // how far from the object a target may be, in diagonals
+constexpr double reach_of_pulls = 100;             // how far from the object a target may be, in diagonals
 constexpr double held_stiffness = 1e3;             // over λ₁ M, of all springs together
 constexpr StepControl control{.max_halvings = 3};  // a step that nobody has time for helps nobody
 
@@ -84,7 +83,7 @@ void SimulationSession::pull(int client, const Pull& pull) {
   require(!std::ranges::binary_search(geometry.fixed, pull.node),
           "node " + std::to_string(pull.node) + " is held by the model");
   const Point middle = 0.5 * (model_->box.lower + model_->box.upper);
-  require((pull.target - middle).norm() <= reach * model_->diagonal,  // false for NaN
+  require((pull.target - middle).norm() <= reach_of_pulls * model_->diagonal,  // false for NaN
           "the target is more than 100 diagonals away from the object");
   const double softness = model_->softness(), stiffness = pull.stiffness.value_or(default_pull_stiffness(*model_));
   require(stiffness >= 1e-6 * softness && stiffness <= 1e6 * softness,
@@ -177,7 +176,7 @@ void SimulationSession::restart_estimate() {
   estimator_.reset();
   if (model_->estimator && settings_.stiffness == 1) estimator_.emplace(*model_->estimator, settings_.damping);
   estimate_from_ = state_.time;
-  estimated_error_ = unknown;
+  estimated_error_ = not_known;
   beyond_training_ = false;
 }
 
@@ -185,7 +184,7 @@ void SimulationSession::estimate() {
   if (!estimator_) return;
   const ErrorEstimate error = estimator_->advance(state_.time - estimate_from_, state_.u, system_.force(state_.u));
   const double size = state_.u.norm();
-  estimated_error_ = size > 0 ? error.total() / size : unknown;
+  estimated_error_ = size > 0 ? error.total() / size : not_known;
   beyond_training_ = error.beyond_training;
 }
 

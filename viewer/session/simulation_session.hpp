@@ -5,6 +5,7 @@
 #include <viewer/session/settings.hpp>
 #include <viewer/session/view_model.hpp>
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,6 +13,9 @@
 #include <vector>
 
 namespace supple {
+
+/// A number of a session or of its frames that there is no telling of.
+inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 /// A spring by which somebody pulls at a node of the surface.
 struct Pull {

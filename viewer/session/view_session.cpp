@@ -12,7 +12,6 @@ namespace supple {
 
 namespace {
 
-constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double budget = 1.0 / 30;         // of an advance [s]
 constexpr double slowest_frame = 1.0 / 60;  // of a mode that plays [s]
@@ -35,7 +34,7 @@ ViewSession::ViewSession(std::shared_ptr<const ViewModel> model, Clock clock)
       clock_(clock ? std::move(clock) : [watch = Stopwatch()] { return watch.seconds(); }),
       simulation_(model_),
       edit_(model_),
-      edit_error_(unknown) {
+      edit_error_(not_known) {
   shown_mode_.shape = unit_shape(*model_, 0);
   if (model_->recordings.empty()) return;
   replay_.emplace(model_);
@@ -225,7 +224,7 @@ void ViewSession::advance_edit(double end) {
 }
 
 void ViewSession::judge_edit() {
-  edit_error_ = unknown;
+  edit_error_ = not_known;
   edit_beyond_training_ = false;
   if (const double size = edit_.state().norm(); model_->estimator && size > 0) {
     const ErrorEstimate error = (*model_->estimator)(edit_.state(), model_->system.force(edit_.state()));
@@ -258,7 +257,7 @@ double ViewSession::until_due() const {
 }
 
 ViewFrame ViewSession::frame() const {
-  ViewFrame frame{.error = unknown, .playing = playing()};
+  ViewFrame frame{.error = not_known, .playing = playing()};
   const auto took = [&](const auto& last) {
     frame.residual = last.report.residual;
     frame.iterations = last.report.iterations;

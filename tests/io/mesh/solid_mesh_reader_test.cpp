@@ -35,7 +35,7 @@ QuadraticTetMesh quadratic_tets() {
 }
 
 /// The message with which a file of these bytes is refused; empty if it is read.
-std::string refusal(const std::string& bytes, const std::string& name) {
+std::string solid_refusal(const std::string& bytes, const std::string& name) {
   try {
     (void)read_solid_mesh(write(bytes, test_folder() / name));
     return "";
@@ -151,19 +151,21 @@ std::string gmsh_cube(const std::string& elements, int count) {
 TEST(ReadSolidMesh, RefusesOtherAndMixedCellsWithTheirCounts) {
   const std::string hex = "1 5 0 10 11 12 13 14 15 16 17\n", tet = "2 4 0 10 11 13 14\n",
                     prism = "3 6 0 10 11 12 14 15 16\n";
-  EXPECT_EQ(refusal(gmsh_cube(hex, 1), "hex.msh"), "");
-  EXPECT_THAT(refusal(gmsh_cube(hex + tet, 2), "mixed.msh"),
+  EXPECT_EQ(solid_refusal(gmsh_cube(hex, 1), "hex.msh"), "");
+  EXPECT_THAT(solid_refusal(gmsh_cube(hex + tet, 2), "mixed.msh"),
               HasSubstr("mixed.msh: holds 1 hexahedron and 1 tet; expected"));
-  EXPECT_THAT(refusal(gmsh_cube(hex + prism, 2), "mixed.msh"), HasSubstr("holds 1 prisms, 1 hexahedron; expected"));
-  EXPECT_THAT(refusal(gmsh_cube("1 17 0 10 11 12 13 14 15 16 17 10 10 10 10 10 10 10 10 10 10 10 10\n", 1), "20.msh"),
-              HasSubstr("holds 1 hexahedra of higher order"));
-  EXPECT_THAT(refusal(gmsh_cube("1 1 0 10 11\n", 1), "line.msh"),
+  EXPECT_THAT(solid_refusal(gmsh_cube(hex + prism, 2), "mixed.msh"),
+              HasSubstr("holds 1 prisms, 1 hexahedron; expected"));
+  EXPECT_THAT(
+      solid_refusal(gmsh_cube("1 17 0 10 11 12 13 14 15 16 17 10 10 10 10 10 10 10 10 10 10 10 10\n", 1), "20.msh"),
+      HasSubstr("holds 1 hexahedra of higher order"));
+  EXPECT_THAT(solid_refusal(gmsh_cube("1 1 0 10 11\n", 1), "line.msh"),
               HasSubstr("holds no tetrahedra or hexahedra but 1 cell"));
 }
 
 TEST(ReadSolidMesh, NamesBadHexahedraByTheNumbersOfTheFile) {
   const auto hexes = [](const std::string& elements, int count) {
-    return refusal(gmsh_cube(elements, count), "bad.msh");
+    return solid_refusal(gmsh_cube(elements, count), "bad.msh");
   };
   EXPECT_THAT(hexes("7 5 0 10 11 12 13 14 15 16 16\n", 1), HasSubstr("hex 7 names node 16 twice"));
   EXPECT_THAT(hexes("7 5 0 10 11 12 13 14 15 17 16\n", 1),

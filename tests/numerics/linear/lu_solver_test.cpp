@@ -57,7 +57,7 @@ TEST(LuSolver, TellsOfMatricesItCannotSolveWith) {
 
 /// r given by lambdas.
 template <typename Residual, typename Jacobian>
-struct DenseEquation {
+struct DenseResidual {
   using MatrixType = Matrix;
   Residual r;
   Jacobian J;
@@ -65,10 +65,12 @@ struct DenseEquation {
   void jacobian(VectorIn u, Matrix& out) const { out = J(u); }
   double scale(VectorIn) const { return 1; }
 };
+template <typename Residual, typename Jacobian>
+DenseResidual(Residual, Jacobian) -> DenseResidual<Residual, Jacobian>;
 
 // Newton's method alone diverges for |x| > 1.39 on arctan.
 TEST(NewtonSolve, ShortensStepsThatWouldDiverge) {
-  DenseEquation equation{[](VectorIn u) -> Vector { return u.array().atan(); },
+  DenseResidual equation{[](VectorIn u) -> Vector { return u.array().atan(); },
                          [](VectorIn u) -> Matrix { return (1 / (1 + u.array().square())).matrix().asDiagonal(); }};
   Vector u = Vector::Constant(2, 3);
   u[1] = -20;
@@ -81,7 +83,7 @@ TEST(NewtonSolve, ShortensStepsThatWouldDiverge) {
 // A force that turns: no potential, its tangent is as far from symmetric as can be.
 TEST(NewtonSolve, SolvesEquationsWithoutAPotentialQuadratically) {
   const auto r = [](VectorIn u) -> Vector { return Vector{{-u[1] + 0.1 * u[0] * u[0] - 1, u[0] + std::sin(u[1])}}; };
-  DenseEquation equation{
+  DenseResidual equation{
       r, [](VectorIn u) -> Matrix { return (Matrix(2, 2) << 0.2 * u[0], -1, 1, std::cos(u[1])).finished(); }};
   Vector u = Vector::Zero(2);
   LuSolver<Matrix> solver;
@@ -92,7 +94,7 @@ TEST(NewtonSolve, SolvesEquationsWithoutAPotentialQuadratically) {
 }
 
 TEST(NewtonSolve, SaysWhyItStopped) {
-  DenseEquation no_root{[](VectorIn u) -> Vector { return u.array().square() + 1; },
+  DenseResidual no_root{[](VectorIn u) -> Vector { return u.array().square() + 1; },
                         [](VectorIn u) -> Matrix { return (2 * u).asDiagonal(); }};
   LuSolver<Matrix> solver;
   Vector u = Vector::Constant(1, 2);

@@ -3,6 +3,7 @@
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
 #include <tests/support/heat.hpp>
+#include <tests/support/rounding.hpp>
 
 #include <gtest/gtest.h>
 
@@ -11,8 +12,6 @@
 
 namespace supple::test {
 namespace {
-
-constexpr double rounding = 1e-12;
 
 /// ∫ k ∇θ·∇x = Σ_v f_v x_v for each coordinate x. For a linear k its integral is exact.
 TEST(HeatConduction, AffineTemperaturesHaveTheirExactFlux) {

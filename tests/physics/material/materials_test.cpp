@@ -6,6 +6,7 @@
 #include <testing/material_conformance.hpp>
 #include <testing/near.hpp>
 #include <testing/random_vectors.hpp>
+#include <tests/support/rounding.hpp>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -15,7 +16,6 @@ namespace {
 
 using Mat3 = Matrix3<double>;
 constexpr IsotropicModuli moduli{.young = 2e5, .poisson = 0.35};
-constexpr double rounding = 1e-12;  // relative to Young's modulus: formulas of a few hundred operations
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 

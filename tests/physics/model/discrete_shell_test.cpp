@@ -7,6 +7,7 @@
 #include <testing/random_vectors.hpp>
 #include <tests/support/force_models.hpp>
 #include <tests/support/meshes.hpp>
+#include <tests/support/rounding.hpp>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -19,7 +20,6 @@ namespace {
 
 using Mat3 = Matrix3<double>;
 constexpr double pi = std::numbers::pi;
-constexpr double rounding = 1e-12;
 
 /// Two triangles at the edge (0, 0, 0) … (1, 0, 0): d turned away by the hinge angle θ from the plane of c.
 /// Heights may be negative: then the triangle is inverted.

@@ -7,6 +7,7 @@
 #include <testing/random_vectors.hpp>
 #include <tests/support/boundary_values.hpp>
 #include <tests/support/meshes.hpp>
+#include <tests/support/rounding.hpp>
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -15,9 +16,8 @@ namespace supple::test {
 namespace {
 
 using Mat3 = Matrix3<double>;
-constexpr IsotropicModuli moduli{.young = 1e5, .poisson = 0.4};
-constexpr double rounding = 1e-12;
-constexpr double edge = 0.1;
+constexpr IsotropicModuli tet_moduli{.young = 1e5, .poisson = 0.4};
+constexpr double tet_edge = 0.1;
 
 template <template <typename> class M>
 struct Law {
@@ -31,8 +31,8 @@ class TetElasticityTest : public testing::Test {
   using Model = typename Law::Model;
   using Material = typename Law::Material;
 
-  const TetMesh mesh = perturbed(kuhn_box(3, 3, 3, edge), 0.1 * edge, 21);
-  const Material material = Material::from(moduli);
+  const TetMesh mesh = perturbed(kuhn_box(3, 3, 3, tet_edge), 0.1 * tet_edge, 21);
+  const Material material = Material::from(tet_moduli);
   const FullSystem<Model> system{Model(mesh, material), lumped_mass(mesh, 1000.0)};
   const double volume = [this] {
     double sum = 0;
@@ -46,24 +46,25 @@ TYPED_TEST_SUITE(TetElasticityTest, Laws);
 TYPED_TEST(TetElasticityTest, RigidMotionsCostNothing) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const Vector u = affine_displacement(this->mesh.nodes, random_rotation(seed), {0.3, -2, 1});
-    EXPECT_NEAR(this->system.energy(u), 0, rounding * moduli.young * this->volume);
-    EXPECT_TRUE(is_near(this->system.force(u), Vector::Zero(u.size()), rounding * moduli.young * edge * edge));
+    EXPECT_NEAR(this->system.energy(u), 0, rounding * tet_moduli.young * this->volume);
+    EXPECT_TRUE(
+        is_near(this->system.force(u), Vector::Zero(u.size()), rounding * tet_moduli.young * tet_edge * tet_edge));
   }
 }
 
 TYPED_TEST(TetElasticityTest, EnergyIsInvariantUnderRigidMotionsOfADeformedState) {
-  const Vector w = random_vector(this->system.dim(), 0.1 * edge, 3);
+  const Vector w = random_vector(this->system.dim(), 0.1 * tet_edge, 3);
   const Points deformed = this->mesh.nodes + Eigen::Map<const Points>(w.data(), this->mesh.num_nodes(), 3);
   const Mat3 R = random_rotation(9);
   const Vector u = w + affine_displacement(deformed, R, {1, 2, -1});
   const Vector f_w = this->system.force(w), f_u = this->system.force(u);
-  EXPECT_NEAR(this->system.energy(u), this->system.energy(w), rounding * moduli.young * this->volume);
+  EXPECT_NEAR(this->system.energy(u), this->system.energy(w), rounding * tet_moduli.young * this->volume);
   for (Index v = 0; v < this->mesh.num_nodes(); ++v)
     EXPECT_TRUE(is_near(f_u.segment<3>(3 * v), R * f_w.segment<3>(3 * v), rounding * f_w.norm()));
 }
 
 TYPED_TEST(TetElasticityTest, InternalForcesHaveNoResultantAndNoMoment) {
-  const Vector u = random_vector(this->system.dim(), 0.1 * edge, 4);
+  const Vector u = random_vector(this->system.dim(), 0.1 * tet_edge, 4);
   const Vector f = this->system.force(u);
   Point resultant = Point::Zero(), moment = Point::Zero();
   for (Index v = 0; v < this->mesh.num_nodes(); ++v) {
@@ -82,7 +83,8 @@ TYPED_TEST(TetElasticityTest, AffineFieldsGiveConstantStressAndInteriorEquilibri
   const Vector u = affine_displacement(this->mesh.nodes, F, {0.1, 0, 0});
   const Mat3 P = this->material.stress(F);
   const Vector f = this->system.force(u);
-  EXPECT_NEAR(this->system.energy(u), this->volume * this->material.energy(F), rounding * moduli.young * this->volume);
+  EXPECT_NEAR(this->system.energy(u), this->volume * this->material.energy(F),
+              rounding * tet_moduli.young * this->volume);
   const std::vector<Index> boundary = boundary_nodes(this->mesh);
   ASSERT_EQ(this->mesh.num_nodes() - static_cast<Index>(boundary.size()), 8);
   for (Index v = 0; v < this->mesh.num_nodes(); ++v)
@@ -107,10 +109,10 @@ TYPED_TEST(TetElasticityTest, AffineBoundaryDisplacementsHaveTheAffineSolution) 
   const Vector g = u - interior.expand(interior.restrict(u, 3), 3);  // on the boundary only
   BoundaryValueProblem<FullSystem<typename TestFixture::Model>> problem{this->system, interior, g};
   SpdSolver<Matrix> solver;
-  Vector w = interior.restrict(u, 3) + random_vector(interior.num_free() * 3, 0.1 * edge, 5);
+  Vector w = interior.restrict(u, 3) + random_vector(interior.num_free() * 3, 0.1 * tet_edge, 5);
   const Report report = Newton{}(problem, solver, w, {.tolerance = 1e-13, .max_iterations = 50});
   EXPECT_EQ(report.status, Status::Converged) << to_string(report.status) << ", " << report.residual;
-  EXPECT_TRUE(is_near(problem.at(w), u, 1e-11 * edge));  // residual times the condition of the stiffness
+  EXPECT_TRUE(is_near(problem.at(w), u, 1e-11 * tet_edge));  // residual times the condition of the stiffness
 }
 
 // Mesh-independent: the same material cut differently has the same energy under an affine field; a stiffer
@@ -160,13 +162,13 @@ TYPED_TEST(TetElasticityTest, MaterialsAndTetsThatCannotBeThrow) {
 }
 
 TEST(LumpedMass, SumsToTheMassOfTheObject) {
-  const TetMesh box = kuhn_box(4, 2, 3, edge);
-  const double volume = 24 * edge * edge * edge;
+  const TetMesh box = kuhn_box(4, 2, 3, tet_edge);
+  const double volume = 24 * tet_edge * tet_edge * tet_edge;
   EXPECT_NEAR(lumped_mass(box, 1200.0).sum(), 1200 * volume, rounding * 1200 * volume);
   EXPECT_NEAR(lumped_mass(perturbed(box, 0, 1), Vector::Constant(box.num_cells(), 700)).sum(), 700 * volume,
               rounding * 700 * volume);
 
-  const TetMesh irregular = perturbed(box, 0.1 * edge, 6);
+  const TetMesh irregular = perturbed(box, 0.1 * tet_edge, 6);
   const Vector density = Vector::LinSpaced(irregular.num_cells(), 500, 3000);
   double mass = 0;
   for (Index e = 0; e < irregular.num_cells(); ++e) mass += density[e] * tet_volume(irregular, e);

@@ -208,7 +208,7 @@ TEST(ModalDerivatives, AreTheLimitOfFiniteDifferencesOfModes) {
     const auto [i, j] = derivatives.pairs[p];
     const Vector theta = rest.restrict(derivatives.vectors.col(p));
     const Vector inertia = modes.omega[i] * modes.omega[i] * system.mass().cwiseProduct(phi.col(i));
-    const auto mode_at = [&](double q) -> Vector {
+    const auto mode_at = [&, j = j](double q) -> Vector {
       return Matrix(system.stiffness(q * phi.col(j))).partialPivLu().solve(inertia);
     };
     std::array<double, 2> error;

@@ -9,6 +9,7 @@
 #include <reduction/pipeline/reduce.hpp>
 #include <testing/near.hpp>
 #include <tests/support/bars.hpp>
+#include <tests/support/solids.hpp>
 
 #include <Eigen/Eigenvalues>
 #include <gmock/gmock.h>
@@ -20,8 +21,6 @@
 
 namespace supple::test {
 namespace {
-
-constexpr IsotropicModuli moduli{.young = 1e5, .poisson = 0.35};
 
 ReduceOptions quick() {
   ReduceOptions options;
@@ -36,7 +35,7 @@ ReduceOptions quick() {
 }
 
 Solid solid_of(const TetMesh& mesh, bool held = true) {
-  return isotropic_solid(mesh, moduli, held ? bar_end(mesh) : std::vector<Index>{});
+  return isotropic_solid(mesh, rubber, held ? bar_end(mesh) : std::vector<Index>{});
 }
 
 Vector frequencies(const Solid& solid, Index count) {

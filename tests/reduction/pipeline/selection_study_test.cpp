@@ -8,7 +8,7 @@
 namespace supple::test {
 namespace {
 
-ReduceOptions quick() {
+ReduceOptions small_fit() {
   ReduceOptions options;
   options.modes = 4;
   options.poses.count = 48;
@@ -16,14 +16,14 @@ ReduceOptions quick() {
   return options;
 }
 
-Solid bar_solid() {
+Solid held_bar() {
   const TetMesh mesh = bar_mesh();
   return isotropic_solid(mesh, {.young = 1e5, .poisson = 0.35}, bar_end(mesh));
 }
 
 const SelectionStudy& study() {
   static const SelectionStudy shared(
-      bar_solid(), quick(), {{.name = "pull"}, {.name = "ramped", .ramp = 60}, {.name = "damped", .damping = 0.1}});
+      held_bar(), small_fit(), {{.name = "pull"}, {.name = "ramped", .ramp = 60}, {.name = "damped", .damping = 0.1}});
   return shared;
 }
 
@@ -56,11 +56,11 @@ TEST(SelectionStudy, SeesMoreComponentsComeCloser) {
 }
 
 TEST(SelectionStudy, PosesTheProblemThatReduceSolves) {
-  ReduceOptions options = quick();
+  ReduceOptions options = small_fit();
   options.points = 30;
   options.seed = 1;
   ReduceReport report;
-  const ReducedModel model = reduce(bar_solid(), options, &report);
+  const ReducedModel model = reduce(held_bar(), options, &report);
   const Selection selection = select(options.selector, 30);
   EXPECT_EQ(selection.indices, model.indices);
   EXPECT_EQ(study().report().dimension, report.dimension);
@@ -78,16 +78,16 @@ TEST(SelectionStudy, LeavesMotionsWithNegativeWeightsOut) {
 }
 
 TEST(Reduce, RefusesSelectorsThatGiveNegativeWeights) {
-  ReduceOptions options = quick();
+  ReduceOptions options = small_fit();
   options.selector = "htp";
   options.points = 60;
-  EXPECT_THROW((void)reduce(bar_solid(), options), SolverError);
+  EXPECT_THROW((void)reduce(held_bar(), options), SolverError);
 }
 
 TEST(SelectionStudy, DeformsFreeObjectsInsteadOfPushingThemAway) {
-  Solid free = bar_solid();
+  Solid free = held_bar();
   free.fixed_nodes = {};
-  ReduceOptions options = quick();
+  ReduceOptions options = small_fit();
   options.modes = 9;
   const SelectionStudy some(free, options, {{.name = "pull", .steps = 40}});
   EXPECT_NEAR(some.largest_displacements()[0], 0.25, 0.05);

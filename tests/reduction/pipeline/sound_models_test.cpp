@@ -29,19 +29,17 @@ std::vector<Index> end_of(const Points& nodes) {
   return end;
 }
 
-constexpr IsotropicModuli moduli{.young = 1e5, .poisson = 0.35};
-
 /// Bars of every law, held and free; of other elements and of Gauss points; a plate.
 std::vector<NamedBody> bodies() {
   std::vector<NamedBody> all;
   for (const std::string law :
        {"stvk", "mooney-rivlin", "neo-hookean", "stable-neo-hookean", "corotational", "ogden", "fung"})
-    all.push_back({law, isotropic_solid(bar_mesh(), moduli, bar_end(bar_mesh()), law), 6});
-  all.push_back({"free bar", isotropic_solid(bar_mesh(), moduli), 6});
+    all.push_back({law, isotropic_solid(bar_mesh(), rubber, bar_end(bar_mesh()), law), 6});
+  all.push_back({"free bar", isotropic_solid(bar_mesh(), rubber), 6});
   const HexMesh hexes = irregular_box<TrilinearHex>({6, 2, 2}, 0.1);
-  all.push_back({"hexahedra", isotropic_solid(hexes, moduli, end_of(hexes.nodes)), 18});
+  all.push_back({"hexahedra", isotropic_solid(hexes, rubber, end_of(hexes.nodes)), 18});
   const QuadraticTetMesh tets = irregular_box<QuadraticTet>({4, 1, 1}, 0.2);
-  QuadraticTetSolid points = isotropic_solid(tets, moduli, end_of(tets.nodes), "neo-hookean");
+  QuadraticTetSolid points = isotropic_solid(tets, rubber, end_of(tets.nodes), "neo-hookean");
   all.push_back({"quadratic tets", points, 24});
   points.component = SolidComponent::GaussPoint;
   all.push_back({"Gauss points", points, 6});
@@ -50,7 +48,7 @@ std::vector<NamedBody> bodies() {
   return all;
 }
 
-ReduceOptions quick() {
+ReduceOptions coarse_fit() {
   ReduceOptions options;
   options.modes = 4;
   options.poses.count = 24;
@@ -59,8 +57,8 @@ ReduceOptions quick() {
   options.selector = "nn-sp:max_iterations=8";
   return options;
 }
-ReduceOptions quick(const Body& body) {
-  ReduceOptions options = quick();
+ReduceOptions coarse_fit(const Body& body) {
+  ReduceOptions options = coarse_fit();
   if (fixed_nodes(body).empty()) options.modes = 9;
   return options;
 }
@@ -92,7 +90,7 @@ TEST(SoundModels, MeetATargetErrorWithStiffnessInEveryDirection) {
   Index repaired = 0, below_rank = 0;
   for (const auto& [name, body, rank] : bodies()) {
     SCOPED_TRACE(name);
-    ReduceOptions options = quick(body);
+    ReduceOptions options = coarse_fit(body);
     options.points = 400;
     options.target_error = 0.3;
     ReduceReport report;
@@ -115,7 +113,7 @@ TEST(SoundModels, MeetATargetErrorWithStiffnessInEveryDirection) {
 TEST(SoundModels, AreNotMadeOfFewerPointsThanItTakes) {
   for (const auto& [name, body, rank] : bodies()) {
     SCOPED_TRACE(name);
-    ReduceOptions options = quick(body);
+    ReduceOptions options = coarse_fit(body);
     options.points = 24 / rank;  // the dimension is at least 36
     options.singular = SingularModels::Refuse;
     const std::string message = refusal(body, options);
@@ -132,10 +130,10 @@ TEST(SoundModels, AreNotMadeOfFewerPointsThanItTakes) {
 }
 
 TEST(SoundModels, OfStudiesMayBeSingularWithANote) {
-  ReduceOptions options = quick();
+  ReduceOptions options = coarse_fit();
   options.points = 4;
   ReduceReport report;
-  const Body bar = isotropic_solid(bar_mesh(), moduli, bar_end(bar_mesh()));
+  const Body bar = isotropic_solid(bar_mesh(), rubber, bar_end(bar_mesh()));
   EXPECT_LT(smallest_ratio(reduce(bar, options, &report)), 1e-9);
   EXPECT_TRUE(report.rest_stiffness.is_singular() && report.rest_stiffness.is_weak());
   ASSERT_EQ(report.notes.size(), 1u);
@@ -144,8 +142,8 @@ TEST(SoundModels, OfStudiesMayBeSingularWithANote) {
 
 // What is allowed may be too little, whatever is asked for.
 TEST(SoundModels, NameWhatIsNotEnough) {
-  const Body bar = isotropic_solid(bar_mesh(), moduli, bar_end(bar_mesh()));
-  ReduceOptions options = quick();
+  const Body bar = isotropic_solid(bar_mesh(), rubber, bar_end(bar_mesh()));
+  ReduceOptions options = coarse_fit();
   options.singular = SingularModels::Refuse;
   options.candidates = {30, 70, 110};
   for (const Index points : {2, 100}) {
@@ -162,8 +160,8 @@ TEST(SoundModels, NameWhatIsNotEnough) {
 // Components at random hold an object only if there are many: of the usual number not always enough.
 TEST(SoundModels, TakeAsManyPointsAsItTakesWhereTheNumberIsOpen) {
   const TetMesh mesh = kuhn_box(16, 4, 4, 0.05);
-  const Body bar = isotropic_solid(mesh, moduli, end_of(mesh.nodes));
-  ReduceOptions options = quick();
+  const Body bar = isotropic_solid(mesh, rubber, end_of(mesh.nodes));
+  ReduceOptions options = coarse_fit();
   options.points = 0;
   options.selector = "random";
   Index repaired = 0;
