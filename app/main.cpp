@@ -4,10 +4,12 @@
 #include <app/commands/fidelity_command.hpp>
 #include <app/commands/info_command.hpp>
 #include <app/commands/mesh_command.hpp>
+#include <app/commands/modes_command.hpp>
 #include <app/commands/pareto_command.hpp>
 #include <app/commands/reduce_command.hpp>
 #include <app/commands/select_command.hpp>
 #include <app/commands/simulate_command.hpp>
+#include <app/commands/static_command.hpp>
 #include <app/commands/stress_command.hpp>
 #ifdef SUPPLE_HAS_VIEWER
 #include <app/commands/view_command.hpp>
@@ -33,7 +35,7 @@ namespace {
 using namespace supple;
 
 /// In the order of the help.
-using Commands = std::tuple<ReduceCommand, SimulateCommand, EditCommand,
+using Commands = std::tuple<ReduceCommand, SimulateCommand, StaticCommand, ModesCommand, EditCommand,
 #ifdef SUPPLE_HAS_VIEWER
                             ViewCommand,
 #endif

@@ -50,10 +50,11 @@ endfunction()
 
 # GCC 12 is wrong in two places that no pragma of ours can reach: -Wrestrict about the C++ library's strings
 # (https://gcc.gnu.org/bugzilla/show_bug.cgi?id=105651), and -Wmaybe-uninitialized about the vectors in structs of options
-# that a caller begins as {.name = ...}; libraries, which begin none, keep that warning.
+# that a caller begins as {.name = ...}; libraries, which begin none, keep that warning. In a batch of sources no source is the
+# main file, and every one with an unnamed namespace would earn -Wsubobject-linkage.
 function(supple_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi -Wno-restrict>)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi -Wno-restrict $<$<BOOL:${CMAKE_UNITY_BUILD}>:-Wno-subobject-linkage>>)
   get_target_property(type ${target} TYPE)
   if(NOT type STREQUAL STATIC_LIBRARY)
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -86,7 +86,7 @@ void CompareSelectorsCommand::run() const {
     throw InputError("--train-groups is for the selector greedy, which is not among --selectors");
   if (runs < 1) throw InputError("--runs is " + std::to_string(runs) + ", expected at least 1");
   const Stopwatch total;
-  const NamedMesh named = load_mesh(mesh);
+  const NamedMesh named = load_mesh(mesh, mesh_unit);
   const Body body = load_body(*this, named);
   if (const auto note = locking_note(*this, body)) warn(*note);
   const Index m = with_force_model(body, [](const auto& model) { return model->num_components(); });

@@ -136,7 +136,7 @@ void EditCommand::run() const {
   const auto as_it_is = [](Index, const Vector& state) { return state; };
   StaticOptions reduced_options = options;
   if (full) reduced_options.solver = Newton{};
-  const NodeNumbering numbering(num_nodes(reduced.body), fixed_nodes(reduced.body));
+  const NodeNumbering numbering(num_nodes(reduced.body), fixed_nodes(reduced.body), held_axes(reduced.body));
   const double unknowns = std::sqrt(3 * static_cast<double>(numbering.num_free()));
   const AnySystem<Matrix> reduced_system = reduced.system();
   EditRun result = run_edits(

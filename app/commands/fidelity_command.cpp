@@ -129,7 +129,8 @@ std::vector<Shape> shapes_of(const Body& body, const EditScene& edits, const Red
   std::vector<Shape> shapes(1);
   shapes[0].name = "full";
   with_force_model(body, [&]<typename Model>(const std::shared_ptr<const Model>& force) {
-    const auto system = std::make_shared<const FullSystem<Model>>(force, nodal_mass(body), fixed_nodes(body));
+    const auto system =
+        std::make_shared<const FullSystem<Model>>(force, nodal_mass(body), fixed_nodes(body), held_axes(body));
     std::vector<Handle> handles;
     std::vector<std::vector<RigidMotion>> path;
     Index d = options.dimension;
@@ -234,7 +235,7 @@ void FidelityCommand::run() const {
   set_num_threads(threads);
   require_writable(json);
   const Stopwatch total;
-  const NamedMesh named = load_mesh(mesh);
+  const NamedMesh named = load_mesh(mesh, mesh_unit);
   const Body body = load_body(*this, named);
   if (const auto note = locking_note(*this, body)) warn(*note);
   std::vector<EditScene> edits;

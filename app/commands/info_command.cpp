@@ -135,7 +135,7 @@ Json model_json(const ReducedModel& model, Rows& rows) {
   const double mass = nodal_mass(model.body).sum();
   const RowMatrix materials = material_parameters(model.body);
   const RayleighDamping& damping = supple::damping(model.body);
-  const std::size_t fixed = fixed_nodes(model.body).size();
+  const std::size_t fixed = fixed_nodes(model.body).size(), sliding = held_axes(model.body).size();
   const Vector hertz = model.omega() / (2 * std::numbers::pi);
   std::string parameters;
   for (Index k = 0; k < std::min<Index>(materials.rows(), 4); ++k)
@@ -145,7 +145,8 @@ Json model_json(const ReducedModel& model, Rows& rows) {
               {{"law", std::string(law(model.body)) + "," + parameters + (shell ? " J, N/m, N/m" : " Pa") +
                            (materials.rows() > 4 ? "; ..." : "")},
                {"mass", shown(mass) + " kg"},
-               {"fixed nodes", shown_count(static_cast<long long>(fixed))},
+               {"fixed nodes", shown_count(static_cast<long long>(fixed)) +
+                                   (sliding > 0 ? ", " + shown_count(static_cast<long long>(sliding)) + " slide" : "")},
                {"damping", "alpha " + shown(damping.alpha) + " 1/s, beta " + shown(damping.beta) + " s"},
                {"subspace", "dimension " + std::to_string(model.dim()) + ", " + model.subspace_name},
                {"modes", joined(hertz, 8) + " Hz"},
@@ -158,6 +159,7 @@ Json model_json(const ReducedModel& model, Rows& rows) {
             {"materials", Json::array()},
             {"mass", mass},
             {"fixed_nodes", fixed},
+            {"sliding_nodes", sliding},
             {"damping", {{"alpha", damping.alpha}, {"beta", damping.beta}}},
             {"omega", json_numbers(model.omega())},
             {"indices", model.indices},

@@ -6,6 +6,7 @@
 #include <io/mesh/mesh_reader.hpp>
 #include <io/mesh/mesh_repairs.hpp>
 #include <io/surface/surface_reader.hpp>
+#include <io/text/unit.hpp>
 
 #include <algorithm>
 #include <array>
@@ -21,11 +22,30 @@ bool is_surface_file(const std::filesystem::path& path) {
   return std::any_of(surfaces.begin(), surfaces.end(), [&](const char* known) { return has_extension(path, known); });
 }
 
+/// Nodes amid edges stand behind all that the file lists.
+QuadraticTetMesh with_places(QuadraticTetMesh mesh, const NodePlaces& of_corners) {
+  if (of_corners.of_node.empty()) return mesh;
+  mesh.places = of_corners;
+  for (Index v = static_cast<Index>(of_corners.of_node.size()); v < mesh.num_nodes(); ++v)
+    mesh.places.of_node.push_back(mesh.places.count++);
+  return mesh;
+}
+
 }  // namespace
 
-NamedMesh load_mesh(const std::string& spec) {
+NamedMesh load_mesh(const std::string& spec, const std::string& unit) {
+  const double metres = conversion_factor(unit, "m");
   NamedMesh result;
+  constexpr std::string_view raised = "tet10:";
+  if (spec.starts_with(raised) && !is_builtin(spec.substr(raised.size()))) {
+    result = load_mesh(spec.substr(raised.size()), unit);
+    const auto* tets = std::get_if<TetMesh>(&result.mesh);
+    if (!tets) throw InputError(spec + ": expected a mesh of tets with four nodes");
+    result.mesh = with_places(quadratic_mesh(*tets), tets->places);
+    return result;
+  }
   if (is_builtin(spec) || is_builtin_surface(spec)) {
+    if (metres != 1) throw InputError("--mesh-unit " + unit + ": built-in meshes are in metres");
     result.notes.format = "built-in";
     if (is_builtin(spec))
       std::visit([&](auto&& mesh) { result.mesh = std::move(mesh); }, builtin_solid_mesh(spec));
@@ -41,6 +61,7 @@ NamedMesh load_mesh(const std::string& spec) {
     result.mesh = read_triangle_mesh(spec, &result.notes);
   else
     std::visit([&](auto&& mesh) { result.mesh = std::move(mesh); }, read_solid_mesh(spec, &result.notes));
+  if (metres != 1) std::visit([&](auto& mesh) { mesh.nodes *= metres; }, result.mesh);
   for (const std::string& warning : result.notes.warnings) warn(spec + ": " + warning);
   return result;
 }

@@ -23,9 +23,10 @@ struct NamedMesh {
 };
 
 /// A built-in such as "bar:80x20x10" or "sphere:16", or else a file: a surface by its extension (.obj, .off, .ply,
-/// .stl), anything else a solid.
+/// .stl), anything else a solid; "tet10:FILE": the tets of a file with a node amid each edge.
 /// Tells the terminal of the notes' warnings.
-NamedMesh load_mesh(const std::string& spec);
+/// \param unit  of the file's lengths; built-ins are in metres.
+NamedMesh load_mesh(const std::string& spec, const std::string& unit = "m");
 /// Whether a file, not a mesh, is named, and begins as a model does: with the length of a header, and its brace.
 bool is_model(const std::string& source);
 /// The built-ins and their sizes, for the foot of a help text.

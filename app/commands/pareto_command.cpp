@@ -185,7 +185,7 @@ void ParetoCommand::run() const {
   require_writable(json);
   if (tolerances.size() > 1 && !trajectory)
     throw InputError("--tolerances holds several, whose errors show in motions only: expected --trajectory, too");
-  const NamedMesh named = load_mesh(mesh);
+  const NamedMesh named = load_mesh(mesh, mesh_unit);
   const Body body = load_body(*this, named);
   if (const auto note = locking_note(*this, body)) warn(*note);
   Sweep sweep(*this, body);

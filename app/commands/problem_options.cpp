@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -20,24 +21,73 @@ namespace supple {
 
 namespace {
 
-std::vector<Index> held_nodes(const ProblemOptions& problem, const NamedMesh& named) {
+/// What an option says, and along which axes it holds that: "x=0:yz"; without axes, along all.
+struct Held {
+  std::string what;
+  std::uint8_t axes = HeldAxes::all;
+};
+Held with_axes(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return {text};
+  Held held{text.substr(0, colon), 0};
+  for (const char c : text.substr(colon + 1)) {
+    const std::uint8_t axis = c < 'x' || c > 'z' ? 0 : static_cast<std::uint8_t>(1 << (c - 'x'));
+    if (axis == 0 || (held.axes & axis) != 0) return {text};
+    held.axes |= axis;
+  }
+  return held.axes == 0 ? Held{text} : held;
+}
+
+struct Supports {
+  std::vector<Index> fixed;
+  std::vector<HeldAxes> sliding;
+};
+
+Supports read_supports(const ProblemOptions& problem, const NamedMesh& named) {
   const Points& nodes = named.nodes();
-  std::set<Index> held;
-  const auto fix = [&](const std::vector<Index>& some) { held.insert(some.begin(), some.end()); };
-  fix(select_nodes(nodes, problem.fix));
-  for (const std::string& box : problem.fix_box) fix(nodes_in_box(nodes, box));
-  for (const std::string& region : problem.fix_region) {
+  std::map<Index, std::uint8_t> axes_of;
+  const auto hold = [&](const std::vector<Index>& some, std::uint8_t axes) {
+    for (const Index v : some) axes_of[v] |= axes;
+  };
+  for (const std::string& text : problem.fix) {
+    const Held rule = with_axes(text);
+    hold(select_nodes(nodes, rule.what), rule.axes);
+  }
+  for (const std::string& text : problem.fix_box) {
+    const Held box = with_axes(text);
+    hold(nodes_in_box(nodes, box.what), box.axes);
+  }
+  for (const std::string& text : problem.fix_region) {
     std::visit(
         [&]<typename Mesh>(const Mesh& mesh) {
-          if constexpr (std::same_as<Mesh, TriangleMesh>)
-            throw InputError("--fix-region '" + region + "': a surface has no regions");
-          else
-            fix(nodes_of_region(mesh, region));
+          if constexpr (std::same_as<Mesh, TriangleMesh>) {
+            throw InputError("--fix-region '" + text + "': a surface has no regions");
+          } else {
+            const auto is_name = [&](const auto& region) { return region.second == text; };
+            const bool is_whole = std::ranges::any_of(mesh.region_names, is_name) || mesh.node_groups.contains(text);
+            const Held region = is_whole ? Held{text} : with_axes(text);
+            hold(nodes_of_region(mesh, region.what), region.axes);
+          }
         },
         named.mesh);
   }
-  for (const std::filesystem::path& file : problem.fix_file) fix(read_node_set(nodes, file, named.places()));
-  return {held.begin(), held.end()};
+  for (const std::filesystem::path& path : problem.fix_file) {
+    const Held file = std::filesystem::exists(path) ? Held{path.string()} : with_axes(path.string());
+    hold(read_node_set(nodes, file.what, named.places()), file.axes);
+  }
+  if (const std::vector<HeldAxes>& of_file = named.notes.held; !of_file.empty()) {
+    if (axes_of.empty())
+      for (const auto& [node, axes] : of_file) axes_of[node] = axes;
+    else
+      warn("the supports of " + problem.mesh + " are not used: options name others");
+  }
+  Supports supports;
+  for (const auto& [node, axes] : axes_of)
+    if (axes == HeldAxes::all)
+      supports.fixed.push_back(node);
+    else
+      supports.sliding.push_back({node, axes});
+  return supports;
 }
 
 RayleighDamping read_damping(const ProblemOptions& problem) {
@@ -207,11 +257,11 @@ double shell_thickness(const ProblemOptions& problem, const TriangleMesh& mesh) 
 }  // namespace
 
 Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
-  const std::vector<Index> held = held_nodes(problem, named);
+  const Supports supports = read_supports(problem, named);
   const RayleighDamping damping = read_damping(problem);
   const bool by_gauss_points = problem.components == "gauss-points";
   const auto solid_body = [&]<typename Mesh>(const Mesh& mesh) -> Body {
-    SolidOf<Mesh> solid{.mesh = mesh, .fixed_nodes = held, .damping = damping};
+    SolidOf<Mesh> solid{.mesh = mesh, .fixed_nodes = supports.fixed, .held_axes = supports.sliding, .damping = damping};
     if (problem.thickness)
       throw InputError("--thickness is for surfaces; the mesh has " + std::string(cell_name(Body(SolidOf<Mesh>{}))));
     if (by_gauss_points) {
@@ -222,6 +272,9 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
     }
     const std::map<int, FileMaterial>& of_file = named.notes.materials;
     if (!of_file.empty() && !names_a_material(problem)) {
+      if (problem.mesh_unit != "m")
+        warn("the materials of " + problem.mesh +
+             " are taken as they are, in Pa and kg/m^3; --mesh-unit is of lengths");
       set_materials_of_file(problem, of_file, solid);
     } else {
       if (!of_file.empty()) warn("the materials of " + problem.mesh + " are not used: options name others");
@@ -244,7 +297,9 @@ Body load_body(const ProblemOptions& problem, const NamedMesh& named) {
         throw InputError(problem.mesh + ": triangle " + std::to_string(t) +
                          " shares no edge with another one: a shell cannot bend or stretch there");
     const Material base = base_material(problem);
-    Shell shell = isotropic_shell(surface, base.moduli, shell_thickness(problem, surface), held, base.density);
+    Shell shell =
+        isotropic_shell(surface, base.moduli, shell_thickness(problem, surface), supports.fixed, base.density);
+    shell.held_axes = supports.sliding;
     shell.damping = damping;
     return shell;
   };
@@ -360,6 +415,7 @@ Json problem_json(const ProblemOptions& problem, const ReduceOptions& options, c
             {"relaxed", options.relaxed},
             {"full_loads", options.full_loads},
             {"seed", options.seed},
+            {"mesh_unit", problem.mesh_unit},
             {"material", law(body)},
             {"components", problem.components},
             {"young", problem.young},

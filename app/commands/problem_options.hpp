@@ -16,6 +16,7 @@ namespace supple {
 /// Options as typed. What is not given follows from the recipe.
 struct ProblemOptions {
   std::string mesh;                  ///< file or built-in
+  std::string mesh_unit = "m";       ///< of the file's lengths
   std::string components = "cells";  ///< what may be selected: cells or gauss-points
 
   std::string law = "stvk", young = "1e5", poisson = "0.4", density = "1000";

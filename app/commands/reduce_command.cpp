@@ -188,6 +188,7 @@ Json report_json(const ReduceCommand& command, const ReduceOptions& options, con
                   {"nodes", report.nodes},
                   {json_key(component_name(model.body)), report.components},
                   {"fixed_nodes", report.fixed_nodes},
+                  {"sliding_nodes", held_axes(model.body).size()},
                   {"mass", nodal_mass(model.body).sum()},
                   {"diagonal", bounding_box(node_positions(model.body)).diagonal()},
                   {"warnings", named.notes.warnings}};
@@ -295,11 +296,20 @@ void draw_spectrum(const std::filesystem::path& path, const std::string& kind, c
                                hertz(report.fitted_eigenvalues), PlotStyle::Markers}}});
 }
 
+std::string held_in_words(const Body& body) {
+  if (is_free(body)) return "free";
+  const auto count = [](const auto& nodes) { return shown_count(static_cast<long long>(nodes.size())); };
+  std::string text;
+  if (!fixed_nodes(body).empty()) text = count(fixed_nodes(body)) + " nodes fixed";
+  if (!held_axes(body).empty()) text += (text.empty() ? "" : ", ") + count(held_axes(body)) + " nodes slide";
+  return text;
+}
+
 void print_summary(const ReduceCommand& command, const ReducedModel& model, const ReduceReport& report,
                    const Rows& search) {
   const std::string kind(component_name(model.body));
   Rows rows{{"object", shown_count(report.nodes) + " nodes, " + shown_count(report.components) + " " + kind + ", " +
-                           (report.fixed_nodes > 0 ? shown_count(report.fixed_nodes) + " nodes fixed" : "free")},
+                           held_in_words(model.body)},
             {"subspace", "dimension " + std::to_string(report.dimension) + " from " +
                              std::to_string(report.omega.size()) + " modes" +
                              (report.rigid_modes > 0 ? " (" + std::to_string(report.rigid_modes) + " rigid)" : "")},
@@ -358,7 +368,7 @@ void ReduceCommand::run() const {
   for (const std::filesystem::path& file : {model, json, picture}) require_writable(file);
   const Stopwatch total;
   Stopwatch watch;
-  const NamedMesh named = load_mesh(mesh);
+  const NamedMesh named = load_mesh(mesh, mesh_unit);
   const Body body = load_body(*this, named);
   const std::optional<ModelGoal> goal = goal_of(*this);
   ReduceOptions options = method(*this, named, body);

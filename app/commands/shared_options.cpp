@@ -17,6 +17,10 @@ namespace supple {
 namespace {
 
 void declare_material(CLI::App& command, ProblemOptions& problem) {
+  command.add_option("--mesh-unit", problem.mesh_unit, "Of the lengths in the mesh's file, such as mm")
+      ->capture_default_str()
+      ->type_name("UNIT")
+      ->group(object_group);
   command.add_option("--material", problem.law, "Law, see below")
       ->capture_default_str()
       ->type_name("LAW")
@@ -62,8 +66,11 @@ void declare_held_nodes(CLI::App& command, ProblemOptions& problem) {
   const auto each = [&](auto& values, const char* name, const char* type, const char* help) {
     command.add_option(name, values, help)->type_name(type)->expected(1)->take_all()->group(object_group);
   };
-  each(problem.fix, "--fix", "RULE", "Hold nodes, e.g. 'y<4%' (of the bounding box) or 'x>=0.25' [m]; may be repeated");
-  each(problem.fix_box, "--fix-box", "BOX", "Hold the nodes in a box x,y,z:x,y,z [m]; may be repeated");
+  each(problem.fix, "--fix", "RULE",
+       "Hold nodes, e.g. 'y<4%' (of the bounding box) or 'x=0 and z>10 mm'; 'x=0:x' holds them along x alone, as a "
+       "plane of symmetry does; may be repeated");
+  each(problem.fix_box, "--fix-box", "BOX",
+       "Hold the nodes in a box x,y,z:x,y,z [m], or x,y,z:x,y,z:xy along these axes; may be repeated");
   each(problem.fix_file, "--fix-file", "FILE", "Hold the nodes that a file lists, one index a line, from 0");
   each(problem.fix_region, "--fix-region", "TAG", "Hold the nodes of a region, by name or number");
 }

@@ -16,6 +16,7 @@
 #include <io/picture/plot.hpp>
 #include <io/table/csv.hpp>
 #include <numerics/optimize/solver_names.hpp>
+#include <physics/body/reactions.hpp>
 #include <physics/load/outside_force_library.hpp>
 #include <physics/time/integrator_library.hpp>
 #include <reduction/model/reduced_model.hpp>
@@ -89,6 +90,21 @@ void write_errors(const std::filesystem::path& path, const std::vector<ErrorReco
                  {"total", "m"}, {"displacement", "m"}, {"beyond_training"}};
   for (const ErrorRecord& error : errors)
     table.add_row(error.time, error.fit, error.outside, error.total, error.size, error.beyond_training ? 1 : 0);
+  const ExitGuard guard;
+  write_csv(path, table);
+}
+
+/// Resultant of what supports exert, in every frame.
+void write_reactions(const std::filesystem::path& path, const Scene& scene, const RayleighDamping& damping,
+                     const Trajectory& trajectory, const ReducedModel& model) {
+  const Reactions reactions(model.body);
+  CsvTable table{{"time", "s"}, {"rx", "N"}, {"ry", "N"}, {"rz", "N"}, {"mx", "N m"}, {"my", "N m"}, {"mz", "N m"}};
+  for (Index k = 0; k < trajectory.num_frames(); ++k) {
+    const Vector u = frame_displacement(trajectory, model, k), v = frame_velocity(trajectory, model, k);
+    const Points r = reactions(u, loads_at(scene, trajectory.time[k]), v, damping);
+    const auto [force, moment] = reactions.resultant(r, node_positions(model.body) + as_points(u));
+    table.add_row(trajectory.time[k], force[0], force[1], force[2], moment[0], moment[1], moment[2]);
+  }
   const ExitGuard guard;
   write_csv(path, table);
 }
@@ -249,6 +265,8 @@ void SimulateCommand::run() const {
     save_trajectory(output / trajectory_file, trajectory);
     write_energies(output / "energies.csv", result);
     write_tracked(output / "tracked.csv", what, places, result);
+    if (!is_free(reduced.body))
+      write_reactions(output / "reactions.csv", what, options.steps.damping, trajectory, reduced);
     if (!result.errors.empty()) write_errors(output / "errors.csv", result.errors);
     if (result.steps.back().time == 0)
       warn("there is no step to draw: there will be no energy.png");

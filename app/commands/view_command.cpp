@@ -64,7 +64,7 @@ struct Problem {
 };
 
 Problem read_problem(const ViewCommand& command) {
-  const NamedMesh named = load_mesh(command.mesh);
+  const NamedMesh named = load_mesh(command.mesh, command.mesh_unit);
   Body body = load_body(command, named);
   ReduceOptions options = reduce_options(command, named, body);
   if (!command.full_loads) options.full_loads = 8;

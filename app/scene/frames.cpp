@@ -1,10 +1,10 @@
 #include <app/report/exit_guard.hpp>
 #include <app/scene/coloured_picture.hpp>
 #include <app/scene/frames.hpp>
+#include <app/scene/result_fields.hpp>
 #include <core/stopwatch.hpp>
 #include <io/frames/vtu_writer.hpp>
 
-#include <numeric>
 #include <optional>
 
 namespace supple {
@@ -45,14 +45,6 @@ void draw_frames(const std::filesystem::path& path, const Points& rest, const st
   write_coloured_picture(path, objects, "displacement [m]", 1600, 800);
 }
 
-/// Where nodes stand in the user's file, if it is not where they stand here.
-void add_places(VtuFields& fields, const NodePlaces& places, const std::vector<Index>& nodes) {
-  if (places.of_node.empty()) return;
-  RowMatrix place(static_cast<Index>(nodes.size()), 1);
-  for (Index k = 0; k < place.rows(); ++k) place(k, 0) = static_cast<double>(places.place(nodes[k]));
-  fields.point_data.push_back({"node", std::move(place)});
-}
-
 void write_surface(const FrameToWrite& frame, VtuSeries& series) {
   const Points displacement = frame.surface.rows(as_points(frame.u));
   VtuFields fields{
@@ -68,9 +60,8 @@ void write_cells(const FrameToWrite& frame, VtuSeries& series) {
   visit_solid(frame.body, [&](const auto& solid) {
     VtuFields fields{
         .point_data = {vector_field("displacement [m]", frame.u), vector_field("velocity [m/s]", frame.v)}};
-    std::vector<Index> nodes(static_cast<std::size_t>(solid.mesh.num_nodes()));
-    std::iota(nodes.begin(), nodes.end(), Index{0});
-    add_places(fields, solid.mesh.places, nodes);
+    add_places(fields, solid.mesh.places, all_nodes(solid.mesh.num_nodes()));
+    if (has_cell_stress(frame.body)) add_stress(fields, cell_stress(frame.body, frame.u));
     series.add(frame.time, solid.mesh.nodes + as_points(frame.u), solid.mesh.cells, fields);
   });
 }
@@ -78,10 +69,11 @@ void write_cells(const FrameToWrite& frame, VtuSeries& series) {
 }  // namespace
 
 Registry<NamedFrames>& frame_writers() {
-  static Registry<NamedFrames> all("kind of frames", {{"surface", "the surface, as triangles", {}, write_surface},
-                                                      {"cells", "all cells of a solid", {}, write_cells},
-                                                      {"tets", "the same as cells", {}, write_cells},
-                                                      {"none", "nothing", {}, {}}});
+  static Registry<NamedFrames> all("kind of frames",
+                                   {{"surface", "the surface, as triangles", {}, write_surface},
+                                    {"cells", "all cells of a solid, with their stress", {}, write_cells},
+                                    {"tets", "the same as cells", {}, write_cells},
+                                    {"none", "nothing", {}, {}}});
   return all;
 }
 

@@ -43,8 +43,12 @@ TimedSprings read_springs(const JsonFields& fields, const Body& body, std::vecto
   TimedSprings result;
   const double stiffness = fields.number("stiffness", positive, "N/m");
   const NodeShares nodes = read_nodes(fields, body);
-  if (const auto note = held_nodes_note(fields, nodes, body, "spring")) warnings.push_back(*note);
-  for (const auto& [node, share] : nodes) result.springs.emplace_back(node, share * stiffness);
+  std::vector<NodalForce> pulls;
+  for (const auto& [node, share] : nodes) {
+    result.springs.emplace_back(node, share * stiffness);
+    pulls.push_back({node, Point::Constant(share)});
+  }
+  if (const auto note = held_nodes_note(fields, pulls, body, "spring")) warnings.push_back(*note);
   result.when = read_span(fields);
   const bool target = fields.contains("target"), displacement = fields.contains("displacement"),
              path = fields.contains("path");
@@ -74,6 +78,40 @@ TimedSprings read_springs(const JsonFields& fields, const Body& body, std::vecto
 
 }  // namespace
 
+Loads loads_at(const Scene& scene, double t) {
+  Loads all;
+  for (const TimedLoads& timed : scene.loads) {
+    const double share = timed.when.share(t);
+    if (share == 0) continue;
+    all.gravity += share * timed.loads.gravity;
+    for (const auto& [node, force] : timed.loads.forces) all.forces.push_back({node, share * force});
+  }
+  for (const TimedSprings& timed : scene.springs)
+    if (timed.when.contains(t))
+      for (const auto& [node, stiffness] : timed.springs)
+        all.springs.push_back({node, stiffness, timed.when.share(t) * timed.displacement(t)});
+  for (const TimedForce& timed : scene.others)
+    if (timed.when.contains(t)) all.others.push_back(timed.force);
+  return all;
+}
+
+double time_of_full_load(const Scene& scene) {
+  double last = 0;
+  const auto count = [&](const TimeSpan& when, double full) { last = std::max(last, std::min(full, when.until)); };
+  for (const TimedLoads& timed : scene.loads) count(timed.when, timed.when.from + timed.when.ramp);
+  for (const TimedSprings& timed : scene.springs)
+    count(timed.when, std::max(timed.when.from + timed.when.ramp, timed.times[timed.times.size() - 1]));
+  for (const TimedForce& timed : scene.others) count(timed.when, timed.when.from);
+  return last;
+}
+
+Index num_idle(const Scene& scene, double t) {
+  const auto idle = [t](const auto& all) {
+    return std::ranges::count_if(all, [t](const auto& timed) { return timed.when.share(t) == 0; });
+  };
+  return idle(scene.loads) + idle(scene.springs) + idle(scene.others);
+}
+
 Scene read_scene(const std::filesystem::path& path, const Body& body) {
   const JsonFields file = JsonFields::read(path);
   Scene scene;
@@ -81,6 +119,8 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
   scene.description = file.text_or("description", path.filename().string());
   if (file.contains("duration")) scene.duration = file.number("duration", positive, "s");
   if (file.contains("step")) scene.step = file.number("step", positive, "s");
+  if (file.contains("start"))
+    scene.starts_in_equilibrium = file.choice("start", {"rest", "equilibrium"}) == "equilibrium";
 
   const Point gravity = file.point_or("gravity", Point::Zero(), "m/s^2");
   if (!gravity.isZero(0)) scene.loads.push_back({{.gravity = gravity, .forces = {}, .springs = {}}, {}});
@@ -91,8 +131,13 @@ Scene read_scene(const std::filesystem::path& path, const Body& body) {
     TimedLoads timed{{}, read_span(fields)};
     const Point force = fields.point("force", "N");
     const NodeShares nodes = read_nodes(fields, body);
-    if (const auto note = held_nodes_note(fields, nodes, body, "force")) warnings.push_back(*note);
     for (const auto& [node, share] : nodes) timed.loads.forces.push_back({node, share * force});
+    if (const auto note = held_nodes_note(fields, timed.loads.forces, body, "force")) warnings.push_back(*note);
+    scene.loads.push_back(std::move(timed));
+  }
+  for (const JsonFields& fields : file.objects_if("surface")) {
+    TimedLoads timed{{.forces = read_surface_load(fields, body)}, read_span(fields)};
+    if (const auto note = held_nodes_note(fields, timed.loads.forces, body, "load")) warnings.push_back(*note);
     scene.loads.push_back(std::move(timed));
   }
   for (const JsonFields& fields : file.objects_if("springs"))

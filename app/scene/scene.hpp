@@ -54,6 +54,7 @@ struct Scene {
   std::vector<TimedLoads> loads;
   std::vector<TimedSprings> springs;
   std::vector<TimedForce> others;
+  bool starts_in_equilibrium = false;  ///< under the loads at t = 0, instead of at rest without them
   std::optional<RayleighDamping> damping;
   std::optional<Choice> integrator;  ///< one of integrators()
   std::optional<NonlinearSolver> solver;
@@ -65,6 +66,13 @@ struct Scene {
 
 /// \throws InputError naming file, place and what was expected there; unknown keys are refused.
 Scene read_scene(const std::filesystem::path& path, const Body& body);
+
+/// What acts at a time, on nodes.
+Loads loads_at(const Scene& scene, double t);
+/// When all ramps and paths of a scene are over, or what they belong to ends [s]: loads stay as they are then, or have ended.
+double time_of_full_load(const Scene& scene);
+/// How many loads, springs and other forces of a scene do not act at a time.
+Index num_idle(const Scene& scene, double t);
 
 /// A scene for any model: pulled for half a period T of its softest flexible mode, then released, for three
 /// periods in steps of T/60. Held objects are pulled sideways as by gravity, along the axis that gives way

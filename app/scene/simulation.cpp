@@ -1,8 +1,10 @@
 #include <app/report/terminal.hpp>
 #include <app/scene/simulation.hpp>
+#include <app/scene/statics.hpp>
 #include <core/stopwatch.hpp>
 #include <numerics/optimize/solver_names.hpp>
 #include <physics/body/body_system.hpp>
+#include <physics/statics/static_solver.hpp>
 #include <physics/time/integrator_library.hpp>
 #include <reduction/system/error_estimator.hpp>
 
@@ -82,7 +84,7 @@ class SceneLoads {
   Load load_;
 };
 
-/// Of a state at the end of a step.
+/// Of a state at the end of a step; of an equilibrium to start from, at time 0, before.
 using Estimate = std::function<ErrorRecord(double time, VectorIn u)>;
 constexpr Index estimate_every = MotionErrorEstimator::every;
 
@@ -105,6 +107,14 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
   auto integrator =
       make_controlled_integrator(options.integrator, system, options.step, options.steps, options.control);
   State state = integrator.at_rest();
+  if (scene.starts_in_equilibrium) {
+    StaticSolver<AnySystem<MatrixType>> settle(system, {.tolerance = 1e-10});
+    const SolveReport report = settle.solve(loads.at(0), state.u);
+    if (!is_equilibrium(report))
+      throw SolverError("no equilibrium under the loads at t = 0 to start from (" +
+                        std::string(to_string(report.status)) + "): is the object held, or is there one?");
+    if (estimate) (void)estimate(0, state.u);
+  }
   integrator.balance(loads.at(0), state);
   result.setup_seconds = setup.seconds();
 
@@ -137,7 +147,7 @@ Simulation integrate(const AnySystem<MatrixType>& system, const Scene& scene, co
       return loads.at(std::abs(t - end) <= 1e-9 * h ? end : t);
     };
   };
-  record(0, {});
+  record(0, {.energy = EnergyAccount<AnySystem<MatrixType>>(system, options.steps.damping, state).now()});
   for (Index k = 1; k <= options.num_steps; ++k) {
     Stopwatch watch;
     const StepReport report = integrator.step(during(k), state);
@@ -315,6 +325,10 @@ Simulation simulate_reduced(const ReducedModel& model, const Scene& scene, const
   if (const std::optional<ErrorEstimator> states = error_estimator(model))
     estimate = [&system, estimator = MotionErrorEstimator(*states, options.steps.damping),
                 root_mass = std::sqrt(nodal_mass(model.body).sum())](double time, VectorIn q) mutable {
+      if (time == 0) {
+        estimator.start_from(q, system.force(q));
+        return ErrorRecord{};
+      }
       const ErrorEstimate error = estimator.advance(time, q, system.force(q));
       return ErrorRecord{.time = time,
                          .fit = error.fit / root_mass,

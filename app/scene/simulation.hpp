@@ -133,7 +133,8 @@ std::string reason_to_end(const Simulation& run, const SimulationOptions& option
 /// Its frames, of no model in a file yet. \param reduced  whether they are reduced coordinates.
 Trajectory trajectory_of(const Simulation& run, const SimulationOptions& options, bool reduced);
 
-/// From rest at t = 0. \throws SolverError if the system has no stable rest state.
+/// From rest at t = 0, or from the equilibrium under the loads then. \throws SolverError if the system has no stable rest
+/// state, or no such equilibrium is found.
 Simulation simulate_reduced(const ReducedModel& model, const Scene& scene, const SimulationOptions& options,
                             const Progress& progress);
 Simulation simulate_full(const Body& body, const Scene& scene, const SimulationOptions& options,

@@ -183,13 +183,19 @@ NumberTable::NumberTable(const std::vector<std::int64_t>& numbers, const Cursor&
       in.fail("node number " + std::to_string(numbers[k]) + " is given twice");
 }
 
-Index NumberTable::find(std::int64_t number, const Cursor& in) const {
+std::optional<Index> NumberTable::lookup(std::int64_t number) const {
   if (table_.empty()) {
     if (number >= first_ && number <= last_) return number - first_;
   } else if (const auto found = table_.find(number); found != table_.end()) {
     return found->second;
   }
-  in.fail("node " + std::to_string(number) + " does not exist");
+  return {};
+}
+
+Index NumberTable::find(std::int64_t number, const Cursor& in) const {
+  const std::optional<Index> found = lookup(number);
+  if (!found) in.fail("node " + std::to_string(number) + " does not exist");
+  return *found;
 }
 
 }  // namespace supple

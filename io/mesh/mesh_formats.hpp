@@ -5,6 +5,7 @@
 #include <io/text/cursor.hpp>
 #include <physics/mesh/cell_mesh.hpp>
 
+#include <optional>
 #include <span>
 #include <unordered_map>
 
@@ -20,6 +21,8 @@ struct FileMesh {
   std::vector<int> region;                      ///< one a tet or hexahedron, in order of the file, or empty
   std::map<int, std::string> region_names;
   std::map<int, std::vector<int>> region_groups;  ///< see CellMesh
+  NodeGroups node_groups;                         ///< of faces, edges and nodes; their nodes in any order
+  std::map<Index, std::uint8_t> held;             ///< axes along which the file holds nodes, see HeldAxes
   std::vector<double>
       attribute;  ///< one a cell, or empty: what tells the regions where a format has real numbers for it
   MeshNumbers numbers;
@@ -44,9 +47,11 @@ void order_mid_edges(FileMesh& mesh, const Cursor& in);
 void read_gmsh(Cursor& in, FileMesh& mesh);
 void read_medit(Cursor& in, FileMesh& mesh);
 void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh);
-void read_vega(Cursor& in, FileMesh& mesh);  ///< \pre the text is one of vega_with_includes()
-/// The text of a file, and those that its lines *INCLUDE name, in their place, relative to the file.
-std::string vega_with_includes(const std::filesystem::path& path, std::string_view text);
+void read_vega(Cursor& in, FileMesh& mesh);    ///< \pre the text is one of with_includes()
+void read_abaqus(Cursor& in, FileMesh& mesh);  ///< \pre the text is one of with_includes()
+/// The text of a file, and those that its lines *INCLUDE name, in their place, relative to the file: "*INCLUDE name" of VegaFEM,
+/// "*INCLUDE, INPUT=name" of Abaqus, in any case.
+std::string with_includes(const std::filesystem::path& path, std::string_view text);
 void read_legacy_vtk(Cursor& in, FileMesh& mesh);
 void read_vtu(const Cursor& in, FileMesh& mesh);
 
@@ -77,6 +82,7 @@ class NumberTable {
   /// \throws InputError at the cursor if a number occurs twice.
   NumberTable(const std::vector<std::int64_t>& numbers, const Cursor& in);
   Index find(std::int64_t number, const Cursor& in) const;
+  std::optional<Index> lookup(std::int64_t number) const;  ///< none for a number that no node has
 
  private:
   std::int64_t first_ = 0, last_ = -1;  // numbers in turn need no table

@@ -13,8 +13,9 @@ namespace {
 struct ElementType {
   int num_nodes = 0;
   int dim = 0;
-  const char* plural = "";  // of solids
+  const char* plural = "";  // of solids and quadrilaterals
 };
+constexpr const char* quadrilaterals = "quadrilaterals";
 
 /// Element types by number. \see Gmsh reference manual, "MSH file format".
 ElementType element_type(std::int64_t type) {
@@ -25,10 +26,10 @@ ElementType element_type(std::int64_t type) {
                                                           {27, {5, 1}},
                                                           {28, {6, 1}},
                                                           {2, {3, 2}},
-                                                          {3, {4, 2}},
+                                                          {3, {4, 2, quadrilaterals}},
                                                           {9, {6, 2}},
-                                                          {10, {9, 2}},
-                                                          {16, {8, 2}},
+                                                          {10, {9, 2, quadrilaterals}},
+                                                          {16, {8, 2, quadrilaterals}},
                                                           {20, {9, 2}},
                                                           {21, {10, 2}},
                                                           {22, {12, 2}},
@@ -91,12 +92,13 @@ class GmshReader {
   }
 
  private:
-  bool is_4() const { return version_ == "4.1"; }
+  bool is_4() const { return version_ == "4.1" || is_40(); }
+  bool is_40() const { return version_ == "4" || version_ == "4.0"; }
 
   void read_format() {
     version_ = in_.word();
-    if (version_ != "2" && version_ != "2.0" && version_ != "2.1" && version_ != "2.2" && version_ != "4.1")
-      in_.fail("expected Gmsh format version 2.2 or 4.1, found " + version_.substr(0, 20));
+    if (version_ != "2" && version_ != "2.0" && version_ != "2.1" && version_ != "2.2" && !is_4())
+      in_.fail("expected Gmsh format version 2.2, 4.0 or 4.1, found " + version_.substr(0, 20));
     const std::int64_t kind = in_.integer("0 (ASCII) or 1 (binary)");
     if (kind != 0 && kind != 1) in_.fail("expected 0 (ASCII) or 1 (binary)");
     is_binary_ = kind == 1;
@@ -146,7 +148,11 @@ class GmshReader {
       const std::string_view line = in_.rest_of_line();
       const std::size_t open = line.find('"'), close = line.rfind('"');
       if (open == close) in_.fail("expected a name in quotes");
-      if (dim == 3) mesh_.region_names[tag] = line.substr(open + 1, close - open - 1);
+      const std::string name(line.substr(open + 1, close - open - 1));
+      if (dim == 3)
+        mesh_.region_names[tag] = name;
+      else
+        group_names_[{static_cast<int>(dim), tag}] = name;
     }
   }
 
@@ -162,6 +168,7 @@ class GmshReader {
 
   /// Parts of entities, each with a tag of its own, the entity that it is of, and the same physical groups.
   void read_partitioned_entities() {
+    if (is_40()) in_.fail("partitions of format 4.0 are not read; save the mesh as 4.1");
     size("the number of partitions");
     const Index num_ghosts = count("ghost entities", 4, 8);
     for (Index k = 0; k < num_ghosts; ++k) integer("a ghost entity"), integer("its partition");
@@ -169,9 +176,9 @@ class GmshReader {
       const std::int64_t parent_dim = integer("the dimension of the parent"), parent = integer("the parent's tag");
       const Index num_partitions = count("partitions", 2, 4);
       for (Index j = 0; j < num_partitions; ++j) integer("a partition");
-      const auto of_parent = physical_of_entity_.find(parent);
-      if (dim == 3 && parent_dim == 3 && of_parent != physical_of_entity_.end())
-        physical_of_entity_[tag].insert(of_parent->second.begin(), of_parent->second.end());
+      const auto of_parent = physical_of_entity_.find({dim, parent});
+      if (parent_dim == dim && of_parent != physical_of_entity_.end())
+        physical_of_entity_[{dim, tag}].insert(of_parent->second.begin(), of_parent->second.end());
     });
   }
 
@@ -184,11 +191,11 @@ class GmshReader {
       for (Index k = 0; k < counts[dim]; ++k) {
         const std::int64_t tag = integer("an entity tag");
         read_more(dim, tag);
-        for (int c = 0; c < (dim == 0 ? 3 : 6); ++c) real("a bounding box");
+        for (int c = 0; c < (dim == 0 && !is_40() ? 3 : 6); ++c) real("a bounding box");
         const Index num_physical = count("physical tags", 2, 4);
         for (Index j = 0; j < num_physical; ++j) {
           const std::int64_t physical = integer("a physical tag");
-          if (dim == 3) physical_of_entity_[tag].insert(group_of(physical));
+          physical_of_entity_[{dim, tag}].insert(group_of(physical));
         }
         const Index num_bounding = dim == 0 ? 0 : count("bounding entities", 2, 4);
         for (Index j = 0; j < num_bounding; ++j) integer("a bounding entity");
@@ -206,16 +213,18 @@ class GmshReader {
     if (is_4()) {
       binary_part([&] {
         const Index num_blocks = count("blocks of nodes", 7, 20);
-        const Index num_nodes = count("nodes", 7, 32);
-        size("the smallest node tag"), size("the largest node tag");
+        const Index num_nodes = count("nodes", 7, is_40() ? 28 : 32);
+        if (!is_40()) size("the smallest node tag"), size("the largest node tag");
         reserve_nodes(num_nodes);
         for (Index block = 0; block < num_blocks; ++block) {
-          const std::int64_t dim = integer("the dimension of an entity");
-          integer("an entity tag");
+          std::int64_t dim = integer("the dimension of an entity");
+          const std::int64_t entity = integer("an entity tag");
+          if (is_40()) dim = entity;  // they stand the other way round
           const bool parametric = integer("0 or 1 (parametric)") != 0;
-          const Index n = count("nodes", 7, 32);
-          for (Index k = 0; k < n; ++k) numbers.push_back(size("a node tag"));
+          const Index n = count("nodes", 7, is_40() ? 28 : 32);
+          for (Index k = 0; k < n && !is_40(); ++k) numbers.push_back(size("a node tag"));
           for (Index k = 0; k < n; ++k) {
+            if (is_40()) numbers.push_back(integer("a node tag"));
             read_point();
             for (std::int64_t c = 0; parametric && c < std::min<std::int64_t>(dim, 3); ++c) real("a parameter");
           }
@@ -249,21 +258,24 @@ class GmshReader {
       binary_part([&] {
         const Index num_blocks = count("blocks of elements", 7, 20);
         const Index num_elements = count("elements", 3, 12);
-        size("the smallest element tag"), size("the largest element tag");
+        if (!is_40()) size("the smallest element tag"), size("the largest element tag");
         Index total = 0;
         for (Index block = 0; block < num_blocks; ++block) {
-          integer("the dimension of an entity");
-          const std::int64_t entity = integer("an entity tag");
+          std::int64_t dim = integer("the dimension of an entity"), entity = integer("an entity tag");
+          if (is_40()) std::swap(dim, entity);
           const ElementType type = read_type();
-          const Index n = count("elements", 2 * type.num_nodes, size_of_size_ * (type.num_nodes + 1));
-          const auto groups = physical_of_entity_.find(entity);
-          const int physical = groups == physical_of_entity_.end() || type.dim != 3
-                                   ? 0
-                                   : tag_of_groups(mesh_, {groups->second.begin(), groups->second.end()});
+          const std::size_t number_size = is_40() ? 4 : static_cast<std::size_t>(size_of_size_);
+          const Index n = count("elements", 2 * type.num_nodes, number_size * (type.num_nodes + 1));
+          const auto found = physical_of_entity_.find({type.dim, entity});
+          const std::vector<int> groups = found == physical_of_entity_.end()
+                                              ? std::vector<int>{}
+                                              : std::vector<int>(found->second.begin(), found->second.end());
+          const int physical = groups.empty() || type.dim != 3 ? 0 : tag_of_groups(mesh_, groups);
           total += n;
           for (Index k = 0; k < n; ++k) {
-            const std::int64_t number = size("an element tag");
-            read_element(type, number, physical, entity, [&] { return size("a node tag"); });
+            const auto tag = [&](std::string_view what) { return is_40() ? integer(what) : size(what); };
+            const std::int64_t number = tag("an element tag");
+            read_element(type, number, physical, entity, groups, [&] { return tag("a node tag"); });
           }
         }
         if (total != num_elements)
@@ -290,7 +302,9 @@ class GmshReader {
             const std::int64_t tag = integer("a tag");
             if (t < 2) tags[t] = tag;
           }
-          read_element(type, number, tags[0], tags[1], [&] { return integer("a node number"); });
+          const int group = group_of(tags[0]);
+          read_element(type, number, tags[0], tags[1], group == 0 ? std::vector<int>{} : std::vector<int>{group},
+                       [&] { return integer("a node number"); });
         }
       }
     });
@@ -303,14 +317,17 @@ class GmshReader {
     return type;
   }
 
+  /// \param groups  physical ones of the element, of whatever dimension.
   template <typename ReadNumber>
   void read_element(const ElementType& type, std::int64_t number, std::int64_t physical, std::int64_t entity,
-                    const ReadNumber& read_number) {
+                    const std::vector<int>& groups, const ReadNumber& read_number) {
     const bool is_tet = type.dim == 3 && type.plural == std::string_view("tets");
     const bool is_hexahedron = type.dim == 3 && type.plural == std::string_view("hexahedra") && type.num_nodes == 8;
     std::array<Index, 10> nodes{};
+    std::vector<Index> face;  // or edge, or point, of a group
     for (int a = 0; a < type.num_nodes; ++a) {
       const std::int64_t node = read_number();
+      if (type.dim < 3 && !groups.empty()) face.push_back(table_->lookup(node).value_or(-1));
       if ((is_tet && (a < 4 || type.num_nodes == 10)) || is_hexahedron) nodes[a] = table_->find(node, in_);
     }
     if (is_tet || is_hexahedron) {
@@ -330,6 +347,20 @@ class GmshReader {
       ++mesh_.other_solid[type.plural];
     } else {
       ++mesh_.num_lower;
+      if (!face.empty()) add_to_groups(type, groups, face);
+    }
+  }
+
+  void add_to_groups(const ElementType& type, const std::vector<int>& groups, const std::vector<Index>& nodes) {
+    if (std::ranges::find(nodes, -1) != nodes.end()) {
+      ++num_without_nodes_;
+      return;
+    }
+    for (const int group : groups) {
+      NodeGroup& own = groups_[{type.dim, group}];
+      own.nodes.insert(own.nodes.end(), nodes.begin(), nodes.end());
+      if (type.dim == 2)
+        own.faces.push_back(face_corners(std::span(nodes).first(type.plural == quadrilaterals ? 4 : 3)));
     }
   }
 
@@ -376,7 +407,23 @@ class GmshReader {
     if (!mesh_.mid_edges.empty()) mesh_.mid_edges.resize(kept);
   }
 
+  void name_groups() {
+    constexpr const char* kinds[]{"point ", "curve ", "surface "};
+    for (const auto& [group, own] : groups_) {
+      const auto name = group_names_.find(group);
+      NodeGroup& all =
+          mesh_.node_groups[name != group_names_.end() ? name->second
+                                                       : kinds[group.first] + std::to_string(group.second)];
+      all.nodes.insert(all.nodes.end(), own.nodes.begin(), own.nodes.end());
+      all.faces.insert(all.faces.end(), own.faces.begin(), own.faces.end());
+    }
+    if (num_without_nodes_ > 0)
+      mesh_.warnings.push_back(std::to_string(num_without_nodes_) +
+                               " elements of groups of faces, edges or points name nodes that do not exist: left out");
+  }
+
   void choose_regions() {
+    name_groups();
     merge_repeated_cells();
     const auto marks = [](const std::vector<int>& tags) {
       return std::any_of(tags.begin(), tags.end(), [](int tag) { return tag != 0; });
@@ -394,7 +441,10 @@ class GmshReader {
   std::int64_t size_of_size_ = 8;
   std::endian order_ = std::endian::native;
   std::optional<NumberTable> table_;
-  std::map<std::int64_t, std::set<int>> physical_of_entity_;
+  std::map<std::pair<int, std::int64_t>, std::set<int>> physical_of_entity_;  // by dimension and tag
+  std::map<std::pair<int, int>, std::string> group_names_;                    // of dimensions below three
+  std::map<std::pair<int, int>, NodeGroup> groups_;
+  Index num_without_nodes_ = 0;
   std::vector<int> physical_, entity_;  // of each tet or hexahedron
 };
 

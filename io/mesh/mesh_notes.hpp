@@ -2,6 +2,7 @@
 /// \file Notes that the mesh readers hand out beside the mesh: format, warnings, numbers in the file.
 
 #include <physics/mesh/mesh_numbers.hpp>
+#include <physics/system/held_axes.hpp>
 
 #include <map>
 #include <string>
@@ -24,6 +25,7 @@ struct MeshNotes {
   std::vector<std::string> warnings;           ///< what was repaired or left out, what may surprise in a simulation
   MeshNumbers numbers;                         ///< the file's own number of each node and each cell or triangle
   std::map<int, FileMaterial> materials = {};  ///< by region
+  std::vector<HeldAxes> held = {};             ///< how the file holds nodes, ascending
 };
 
 }  // namespace supple

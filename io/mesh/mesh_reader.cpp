@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <numeric>
 
@@ -12,7 +13,7 @@ namespace supple {
 namespace {
 
 constexpr std::string_view formats_read =
-    "Gmsh .msh (2.2, 4.1), Medit .mesh, TetGen .node with .ele, VegaFEM .veg, VTK .vtk and .vtu";
+    "Gmsh .msh (2.2, 4.0, 4.1), Abaqus .inp, Medit .mesh, TetGen .node with .ele, VegaFEM .veg, VTK .vtk and .vtu";
 
 [[noreturn]] void refuse_unknown(const std::string& name, std::string_view bytes) {
   const std::string_view word = first_word(bytes);
@@ -46,6 +47,16 @@ FileMesh read_tetgen_pair(std::filesystem::path path) {
   return mesh;
 }
 
+/// Files of VegaFEM begin with stars, too, but with other keywords.
+bool is_abaqus(const std::filesystem::path& path, std::string_view bytes) {
+  if (has_extension(path, ".inp")) return true;
+  std::string word(first_word(bytes));
+  word = word.substr(0, word.find(','));
+  for (char& c : word) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return word.starts_with("**") || word == "*HEADING" || word == "*NODE" || word == "*PART" || word == "*ELEMENT" ||
+         word == "*PREPRINT";
+}
+
 FileMesh read_any(const std::filesystem::path& path) {
   std::error_code none;
   if (!std::filesystem::exists(path, none) &&
@@ -67,8 +78,12 @@ FileMesh read_any(const std::filesystem::path& path) {
   } else if (word == "MeshVersionFormatted") {
     Cursor in(name, bytes, comments);
     read_medit(in, mesh);
+  } else if (is_abaqus(path, bytes)) {
+    const std::string all = with_includes(path, bytes);
+    Cursor in(all.size() == bytes.size() ? name : name + " with what it includes", all);
+    read_abaqus(in, mesh);
   } else if (word.starts_with('*')) {
-    const std::string all = vega_with_includes(path, bytes);
+    const std::string all = with_includes(path, bytes);
     Cursor in(all.size() == bytes.size() ? name : name + " with what it includes", all,
               {.separator = ',', .comment = '#'});
     read_vega(in, mesh);
@@ -149,6 +164,26 @@ bool is_reversed(const Mesh& mesh, Index e) {
   return cell_volume(mesh, e) < 0;
 }
 
+/// What of a group of the file is left where nodes of no cell are dropped.
+NodeGroup in_use(const NodeGroup& group, const NodePlaces& places) {
+  const auto sort_once = [](auto& list) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  NodeGroup result;
+  for (const Index place : group.nodes)
+    if (const Index v = places.node(place); v >= 0) result.nodes.push_back(v);
+  for (FaceCorners face : group.faces) {
+    for (Index& v : face)
+      if (v >= 0) v = places.node(v);
+    const std::span corners(face.begin(), face[3] < 0 && face[2] >= 0 ? 3u : 4u);
+    if (std::ranges::all_of(corners, [](Index v) { return v >= 0; })) result.faces.push_back(face_corners(corners));
+  }
+  sort_once(result.nodes);
+  sort_once(result.faces);
+  return result;
+}
+
 /// What all kinds of cells have in common: the nodes in use, regions, orientation, checks, warnings.
 template <typename Mesh, std::size_t size>
 Mesh finish(FileMesh& file, std::vector<std::array<Index, size>> cells, const std::string& name, MeshNotes* notes) {
@@ -162,6 +197,8 @@ Mesh finish(FileMesh& file, std::vector<std::array<Index, size>> cells, const st
   if (const Index dropped = static_cast<Index>(file.nodes.size()) - mesh.num_nodes(); dropped > 0)
     file.warnings.push_back(plural(dropped, "node belongs", "nodes belong") + " to no " + cell_word<size> +
                             ": dropped");
+  for (const auto& [group_name, group] : file.node_groups)
+    if (NodeGroup own = in_use(group, mesh.places); !own.nodes.empty()) mesh.node_groups[group_name] = std::move(own);
   std::vector<std::array<Index, size>>& own = mesh.cells;
   own = std::move(cells);
   if (std::any_of(file.region.begin(), file.region.end(), [](int tag) { return tag != 0; })) {
@@ -187,6 +224,8 @@ Mesh finish(FileMesh& file, std::vector<std::array<Index, size>> cells, const st
   if (notes) {
     warn_of_surprises(mesh, file.numbers, file.warnings);
     *notes = {std::move(file.format), std::move(file.warnings), std::move(file.numbers), std::move(file.materials)};
+    for (const auto& [place, axes] : file.held)
+      if (const Index v = mesh.places.node(place); v >= 0) notes->held.push_back({v, axes});
   }
   return mesh;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// \file Reader of meshes of solids, of tets or hexahedra, from files of Gmsh, Medit, TetGen, VegaFEM or VTK.
+/// \file Reader of meshes of solids, of tets or hexahedra, from files of Gmsh, Abaqus, Medit, TetGen, VegaFEM or VTK.
 
 #include <io/mesh/mesh_notes.hpp>
 #include <physics/mesh/cell_mesh.hpp>
@@ -15,6 +15,9 @@ using SolidMesh = std::variant<TetMesh, HexMesh, QuadraticTetMesh>;
 /// tets of second order, with ten. Formats, known by their content:
 ///   - Gmsh .msh 2.x and 4.1, ASCII and binary of either byte order; regions are the physical groups of
 ///     volumes, else the volume entities
+///   - Abaqus and CalculiX .inp: C3D4, C3D10 and C3D8 of all kinds, sets, sections, elastic and neo-Hookean or Mooney–Rivlin
+///     materials, boundaries, includes; one part, not moved; regions are the element sets of the solid sections, other sets
+///     are groups of nodes
 ///   - Medit .mesh, ASCII; regions are the references of the cells
 ///   - TetGen .node with .ele, by the name of either or what they have in common; regions are the last
 ///     attribute of a tet

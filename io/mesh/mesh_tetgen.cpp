@@ -1,5 +1,6 @@
 #include <io/mesh/mesh_formats.hpp>
 
+#include <cmath>
 #include <numeric>
 
 namespace supple {
@@ -24,7 +25,8 @@ void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh) {
   };
   const Index num_nodes = node_file.count("nodes", 7);
   if (node_file.integer_in_line("the dimension") != 3) node_file.fail("expected dimension 3");
-  const std::int64_t num_extra = num_columns(node_file, "attributes") + num_columns(node_file, "boundary markers");
+  const std::int64_t num_extra = num_columns(node_file, "attributes"),
+                     num_markers = num_columns(node_file, "boundary markers");
   node_file.rest_of_line();
   mesh.nodes.resize(num_nodes);
   std::int64_t first = 1;
@@ -38,7 +40,11 @@ void read_tetgen(Cursor& node_file, Cursor& ele_file, FileMesh& mesh) {
     if (number != first + v)
       node_file.fail("expected node " + std::to_string(first + v) + ", found " + std::to_string(number));
     for (double& coordinate : mesh.nodes[v]) coordinate = node_file.real_in_line("a coordinate");
-    for (std::int64_t k = 0; k < num_extra; ++k) node_file.real_in_line("an attribute or a boundary marker");
+    for (std::int64_t k = 0; k < num_extra; ++k) node_file.real_in_line("an attribute");
+    for (std::int64_t k = 0; k < num_markers; ++k)
+      if (const double marker = node_file.real_in_line("a boundary marker");
+          marker != 0 && marker == std::floor(marker) && std::abs(marker) < 1e15)
+        mesh.node_groups["marker " + std::to_string(static_cast<std::int64_t>(marker))].nodes.push_back(v);
     node_file.rest_of_line();
   }
   mesh.numbers.node.resize(num_nodes);

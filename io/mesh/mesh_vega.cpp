@@ -1,5 +1,7 @@
 #include <io/mesh/mesh_formats.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <numeric>
 
@@ -22,16 +24,23 @@ std::string next_line(Cursor& in) {
   }
 }
 
+constexpr std::string_view include = "*INCLUDE";
+bool is_include(std::string_view line) {
+  return line.size() >= include.size() && std::ranges::equal(line.substr(0, include.size()), include, {}, [](char c) {
+           return static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+         });
+}
+
 void expand(const std::filesystem::path& path, std::string_view text, int depth, int& num_included, std::string& all) {
   constexpr int deepest = 16, most = 1000;
-  constexpr std::string_view include = "*INCLUDE";
   if (depth > deepest || num_included > most)
     throw InputError(path.string() + ": files include each other, " + std::to_string(num_included) + " so far");
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size() - 1) + 1;
     const std::string line = trimmed(text.substr(0, end));
-    if (line.starts_with(include)) {
-      const std::string name = trimmed(std::string_view(line).substr(include.size()));
+    if (is_include(line)) {
+      std::string name = trimmed(std::string_view(line).substr(include.size()));
+      if (name.starts_with(',')) name = trimmed(std::string_view(name).substr(name.find('=') + 1));
       if (name.empty()) throw InputError(path.string() + ": *INCLUDE names no file");
       const std::filesystem::path file = path.parent_path() / name;
       try {
@@ -79,7 +88,7 @@ bool is_read(const FileMaterial& material) {
 
 }  // namespace
 
-std::string vega_with_includes(const std::filesystem::path& path, std::string_view text) {
+std::string with_includes(const std::filesystem::path& path, std::string_view text) {
   std::string all;
   all.reserve(text.size());
   int num_included = 0;

@@ -2,6 +2,7 @@
 #include <io/mesh/node_sets.hpp>
 #include <io/text/cursor.hpp>
 #include <io/text/index_file.hpp>
+#include <io/text/unit.hpp>
 
 #include <array>
 #include <charconv>
@@ -29,6 +30,61 @@ std::optional<double> to_finite(std::string_view text) {
 [[noreturn]] void fail(std::string_view rule, const std::string& message) {
   throw InputError("node selection \"" + std::string(rule) + "\": " + message);
 }
+
+std::vector<std::string_view> parts_of(std::string_view text, std::string_view separator) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t end = text.find(separator);
+    parts.push_back(trim(text.substr(0, end)));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + separator.size());
+  }
+}
+
+/// "y<4%": whether a node is on one side of a plane, or in it.
+class Comparison {
+ public:
+  /// \throws InputError naming the rule that it is a part of.
+  Comparison(std::string_view rule, std::string_view text, const BoundingBox& box) {
+    const std::string expectation =
+        "expected an axis, one of < <= > >= =, and a coordinate or a share, such as y<4%, x>=0.25 or x=10 mm; several "
+        "with 'and' and 'or' between";
+    if (text.empty() || text[0] < 'x' || text[0] > 'z') fail(rule, expectation);
+    axis_ = text[0] - 'x';
+    text = trim(text.substr(1));
+    if (text.empty() || (text[0] != '<' && text[0] != '>' && text[0] != '=')) fail(rule, expectation);
+    relation_ = text[0];
+    or_equal_ = text.size() > 1 && text[1] == '=';
+    text = trim(text.substr(or_equal_ ? 2 : 1));
+    const bool is_share = text.ends_with('%');
+    std::optional<double> value = to_finite(is_share ? text.substr(0, text.size() - 1) : text);
+    if (!value && is_share) fail(rule, expectation);
+    if (!value) {
+      try {
+        value = parse_quantity(text, "m");
+      } catch (const InputError& error) {
+        fail(rule, expectation + ": " + error.what());
+      }
+    }
+    bound_ = is_share ? std::lerp(box.lower[axis_], box.upper[axis_], *value / 100) : *value;
+    rounding_ = 1e-6 * box.diagonal();
+  }
+
+  char relation() const { return relation_; }
+  AxisPlane plane() const { return {axis_, bound_}; }
+
+  bool operator()(const Point& node) const {
+    const double x = node[axis_];
+    if (relation_ == '=') return std::abs(x - bound_) <= rounding_;
+    return (or_equal_ && x == bound_) || (relation_ == '<' ? x < bound_ : x > bound_);
+  }
+
+ private:
+  int axis_;
+  char relation_;
+  bool or_equal_;
+  double bound_, rounding_;
+};
 
 template <typename Is>
 std::vector<Index> nodes_where(Index num_nodes, std::string_view rule, const Is& is_selected) {
@@ -59,6 +115,8 @@ std::vector<Index> region_nodes(const Mesh& mesh, std::string_view region) {
       exists = true;
       for (const Index v : mesh.cells[e]) is_member[v] = true;
     }
+  if (const auto group = mesh.node_groups.find(std::string(region)); !exists && group != mesh.node_groups.end())
+    return group->second.nodes;
   if (!exists) {
     std::string known;
     for (const int number : all_regions(mesh)) {
@@ -70,6 +128,10 @@ std::vector<Index> region_nodes(const Mesh& mesh, std::string_view region) {
       known += (known.empty() ? "" : ", ") + std::to_string(number);
       if (name != mesh.region_names.end()) known += " (" + name->second + ")";
     }
+    for (const auto& [name, group] : mesh.node_groups) {
+      if (known.size() > 200) break;
+      known += (known.empty() ? "" : ", ") + name;
+    }
     fail(region, known.empty() ? "the mesh has no regions" : "no such region; the mesh has " + known);
   }
   return nodes_where(mesh.num_nodes(), region, [&](Index v) { return is_member[v]; });
@@ -78,25 +140,23 @@ std::vector<Index> region_nodes(const Mesh& mesh, std::string_view region) {
 }  // namespace
 
 std::vector<Index> select_nodes(const Points& nodes, std::string_view rule) {
-  const std::string expectation =
-      "expected an axis, < <= > or >=, and a coordinate or a share, such as y<4% or x>=0.25";
-  std::string_view rest = trim(rule);
-  if (rest.empty() || rest[0] < 'x' || rest[0] > 'z') fail(rule, expectation);
-  const int axis = rest[0] - 'x';
-  rest = trim(rest.substr(1));
-  if (!rest.starts_with('<') && !rest.starts_with('>')) fail(rule, expectation);
-  const bool is_below = rest[0] == '<', or_equal = rest.size() > 1 && rest[1] == '=';
-  rest = trim(rest.substr(or_equal ? 2 : 1));
-  const bool is_share = rest.ends_with('%');
-  const std::optional<double> value = to_finite(is_share ? rest.substr(0, rest.size() - 1) : rest);
-  if (!value) fail(rule, expectation);
-
   const BoundingBox box = bounding_box(nodes);
-  const double bound = is_share ? std::lerp(box.lower[axis], box.upper[axis], *value / 100) : *value;
-  return nodes_where(nodes.rows(), rule, [&](Index v) {
-    const double x = nodes(v, axis);
-    return (or_equal && x == bound) || (is_below ? x < bound : x > bound);
-  });
+  std::vector<char> any(static_cast<std::size_t>(nodes.rows()), false);
+  for (const std::string_view alternative : parts_of(rule, " or ")) {
+    std::vector<char> all(any.size(), true);
+    for (const std::string_view text : parts_of(alternative, " and ")) {
+      const Comparison holds(rule, text, box);
+      for (std::size_t v = 0; v < all.size(); ++v) all[v] = all[v] && holds(nodes.row(static_cast<Index>(v)));
+    }
+    for (std::size_t v = 0; v < any.size(); ++v) any[v] = any[v] || all[v];
+  }
+  return nodes_where(nodes.rows(), rule, [&](Index v) { return any[static_cast<std::size_t>(v)]; });
+}
+
+AxisPlane parse_plane(const Points& nodes, std::string_view text) {
+  const Comparison plane(text, trim(text), bounding_box(nodes));
+  if (plane.relation() != '=') fail(text, "expected a plane, such as x=50% or z=10 mm");
+  return plane.plane();
 }
 
 std::vector<Index> select_nodes(const Points& nodes, const std::vector<std::string>& rules) {

@@ -12,11 +12,21 @@
 
 namespace supple {
 
-/// Nodes on one side of a plane: an axis, one of < <= > >=, and a coordinate [m] or a share of the bounding
-/// box along that axis, counted from its lower end: "y<4%", "x >= 0.25".
+/// Nodes on one side of a plane, or in it: an axis, one of < <= > >= =, and a coordinate, in m or with its unit, or a share
+/// of the bounding box along that axis, counted from its lower end: "y<4%", "x >= 0.25", "z = 10 mm". Several make one rule
+/// with "and" and "or" between, of which "and" binds more: "x=0 and y>50% or x=1". In a plane are nodes within 1e-6 of the
+/// diagonal.
 /// \return ascending node indices, at least one.
 /// \throws InputError naming the rule if it has another form or selects no node.
 std::vector<Index> select_nodes(const Points& nodes, std::string_view rule);
+
+/// A plane across an axis: "x=50%", "z = 10 mm", as in the rules of select_nodes().
+struct AxisPlane {
+  int axis;
+  double coordinate;  ///< [m]
+};
+/// \throws InputError naming the text if it has another form.
+AxisPlane parse_plane(const Points& nodes, std::string_view text);
 
 /// Nodes that at least one of the rules selects, ascending; none for no rules.
 std::vector<Index> select_nodes(const Points& nodes, const std::vector<std::string>& rules);
@@ -25,7 +35,7 @@ std::vector<Index> select_nodes(const Points& nodes, const std::vector<std::stri
 /// \throws InputError as above, and if a lower bound is above its upper bound.
 std::vector<Index> nodes_in_box(const Points& nodes, std::string_view box);
 
-/// Nodes of the cells of a region, given by its name or its number.
+/// Nodes of the cells of a region, given by its name or its number; or those of a group of faces, edges or nodes, by its name.
 /// \throws InputError if the mesh has no such region; it lists those it has.
 std::vector<Index> nodes_of_region(const TetMesh& mesh, std::string_view region);
 std::vector<Index> nodes_of_region(const HexMesh& mesh, std::string_view region);

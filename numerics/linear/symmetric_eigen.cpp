@@ -9,7 +9,8 @@ namespace {
 Eigen::SelfAdjointEigenSolver<Matrix> solved(const Matrix& A, int what) {
   require_size("columns of A", A.cols(), A.rows());
   Eigen::SelfAdjointEigenSolver<Matrix> eigen(A, what);
-  if (eigen.info() != Eigen::Success) throw SolverError("eigenvalues of a symmetric matrix did not converge");
+  if (eigen.info() != Eigen::Success || !eigen.eigenvalues().allFinite())  // NaN may be a success to Eigen
+    throw SolverError("eigenvalues of a symmetric matrix did not converge");
   return eigen;
 }
 

@@ -32,8 +32,22 @@ inline Index num_nodes(const Body& body) {
 inline const NodePlaces& node_places(const Body& body) {
   return std::visit([](const auto& b) -> const NodePlaces& { return b.mesh.places; }, body);
 }
+/// Groups of faces, edges and nodes that the user's file names; none of a shell.
+inline const NodeGroups& node_groups(const Body& body) {
+  static const NodeGroups none;
+  if (std::holds_alternative<Shell>(body)) return none;
+  return *visit_solid(body, [](const auto& solid) { return &solid.mesh.node_groups; });
+}
 inline const std::vector<Index>& fixed_nodes(const Body& body) {
   return std::visit([](const auto& b) -> const std::vector<Index>& { return b.fixed_nodes; }, body);
+}
+/// How nodes are held that slide.
+inline const std::vector<HeldAxes>& held_axes(const Body& body) {
+  return std::visit([](const auto& b) -> const std::vector<HeldAxes>& { return b.held_axes; }, body);
+}
+/// Whether no support holds it anywhere.
+inline bool is_free(const Body& body) {
+  return fixed_nodes(body).empty() && held_axes(body).empty();
 }
 inline const RayleighDamping& damping(const Body& body) {
   return std::visit([](const auto& b) -> const RayleighDamping& { return b.damping; }, body);

@@ -7,7 +7,7 @@ namespace supple {
 AnySystem<SparseMatrix> full_system(const Body& body) {
   return with_force_model(body, [&]<typename Model>(const std::shared_ptr<const Model>& model) {
     return AnySystem<SparseMatrix>(
-        std::make_shared<const FullSystem<Model>>(model, nodal_mass(body), fixed_nodes(body)));
+        std::make_shared<const FullSystem<Model>>(model, nodal_mass(body), fixed_nodes(body), held_axes(body)));
   });
 }
 

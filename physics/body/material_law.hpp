@@ -44,6 +44,8 @@ struct MaterialLaw {
   CellModel<QuadraticTetMesh> quadratic_tets = {};
   /// Poisson's ratio at rest of such values, see poisson_at_rest(). Empty where a law does not tell.
   std::function<double(const std::vector<double>&)> poisson = {};
+  /// ψ(F) [J/m³] of such values, and P = ∂ψ/∂F [Pa]. Empty where a law does not tell.
+  std::function<double(const std::vector<double>&, const Matrix3<double>& F, Matrix3<double>& P)> response = {};
 
   /// Those that agree with the moduli, with some replaced by name.
   /// \throws std::invalid_argument for a name that the law does not have, for values of which rest is no stable
@@ -168,6 +170,12 @@ MaterialLaw make_material_law(std::string name, std::string description = "") {
       .quadratic_tets = cells,
       .poisson =
           [](const std::vector<double>& values) { return poisson_at_rest<Material>(material_with<Material>(values)); },
+      .response =
+          [](const std::vector<double>& values, const Matrix3<double>& F, Matrix3<double>& P) {
+            const auto material = material_with<Material>(values);
+            P = stress(material, F);
+            return material.energy(F);
+          },
   };
 }
 

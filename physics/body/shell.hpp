@@ -4,6 +4,7 @@
 #include <physics/material/shell_material.hpp>
 #include <physics/mesh/triangle_mesh.hpp>
 #include <physics/system/damping.hpp>
+#include <physics/system/held_axes.hpp>
 
 #include <vector>
 
@@ -16,6 +17,7 @@ struct Shell {
   Vector thickness = Vector::Constant(1, 0.01);  ///< [m], one for all triangles or one each; what the mass needs
   Vector density = Vector::Constant(1, 1000);    ///< [kg/m³], one for all triangles or one each
   std::vector<Index> fixed_nodes = {};           ///< ascending
+  std::vector<HeldAxes> held_axes = {};          ///< of nodes that slide, ascending, none of them fixed
   RayleighDamping damping = {};
 
   Vector nodal_mass() const;  ///< n [kg], lumped

@@ -5,6 +5,7 @@
 #include <physics/mesh/cell_mesh.hpp>
 #include <physics/model/solid_component.hpp>
 #include <physics/system/damping.hpp>
+#include <physics/system/held_axes.hpp>
 
 #include <cstdint>
 #include <string>
@@ -27,6 +28,7 @@ struct SolidOf {
   Vector density = Vector::Constant(1, 1000);          ///< [kg/m³], one for all cells or one each
   SolidComponent component = SolidComponent::Element;  ///< of its force model; a linear tet is its one Gauss point
   std::vector<Index> fixed_nodes = {};                 ///< ascending
+  std::vector<HeldAxes> held_axes = {};                ///< of nodes that slide, ascending, none of them fixed
   RayleighDamping damping = {};
 
   Vector nodal_mass() const;  ///< n [kg], lumped

@@ -59,6 +59,9 @@ class AnyOutsideForce {
   std::span<const Index> nodes() const { return force_->nodes(); }
   void force(const Points& u, Points& f) const { force_->force(u, f); }
   bool has_potential() const { return force_->has_potential(); }
+  /// Whether it is a load that may grow in steps and holds nothing, as a pressure does, by `static constexpr bool is_load`; a
+  /// floor is none.
+  bool is_load() const { return force_->is_load(); }
   double potential(const Points& u) const { return force_->potential(u); }  ///< 0 without one
   void stiffness(const Points& u, ForceGradient& K) const { force_->stiffness(u, K); }
 
@@ -69,6 +72,7 @@ class AnyOutsideForce {
     virtual std::span<const Index> nodes() const = 0;
     virtual void force(const Points& u, Points& f) const = 0;
     virtual bool has_potential() const = 0;
+    virtual bool is_load() const = 0;
     virtual double potential(const Points& u) const = 0;
     virtual void stiffness(const Points& u, ForceGradient& K) const = 0;
   };
@@ -79,6 +83,12 @@ class AnyOutsideForce {
     std::span<const Index> nodes() const override { return own_.nodes(); }
     void force(const Points& u, Points& f) const override { own_.force(u, f); }
     bool has_potential() const override { return PotentialOutsideForce<F>; }
+    bool is_load() const override {
+      if constexpr (requires { F::is_load; })
+        return F::is_load;
+      else
+        return false;
+    }
     double potential(const Points& u) const override {
       if constexpr (PotentialOutsideForce<F>)
         return own_.potential(u);

@@ -1,3 +1,4 @@
+#include <physics/load/follower_pressure.hpp>
 #include <physics/load/outside_force_library.hpp>
 #include <physics/load/penalty_floor.hpp>
 
@@ -13,7 +14,13 @@ Registry<NamedOutsideForce>& outside_forces() {
                                .add("stiffness", &FloorParameters::stiffness, "of all nodes together [N/m]"),
                            [](const TouchedNodes& where, const FloorParameters& parameters) {
                              return PenaltyFloor(where.rest_positions, where.nodes, where.shares, parameters);
-                           })});
+                           }),
+       named_outside_force(
+           "pressure", "a pressure on the surface between the nodes, which it follows",
+           OptionsOf<PressureParameters>().add("pressure", &PressureParameters::pressure, "pushing inward [Pa]"),
+           [](const TouchedNodes& where, const PressureParameters& parameters) {
+             return FollowerPressure(where.rest_positions, where.triangles, parameters);
+           })});
   return all;
 }
 

@@ -29,7 +29,7 @@ struct NamedOutsideForce {
 };
 
 /// The entry of a force of one's own, from what makes it: make(where, parameters) with a Parameters of these options.
-/// \throws std::invalid_argument for options with the names of keys that scenes have: force, nodes, from, until.
+/// \throws std::invalid_argument for options with the names of keys that scenes have: force, nodes, region, from, until.
 ///
 ///     outside_forces().add(named_outside_force("wind", "drag of a steady wind", OptionsOf<WindParameters>()…,
 ///                                              [](const TouchedNodes& where, const WindParameters& p) { return Wind(…); }));
@@ -37,7 +37,7 @@ template <typename Parameters, typename Make>
 NamedOutsideForce named_outside_force(std::string name, std::string description, OptionsOf<Parameters> options,
                                       Make make) {
   for (const OptionInfo& option : options.info())
-    for (const char* key : {"force", "nodes", "from", "until"})
+    for (const char* key : {"force", "nodes", "region", "from", "until"})
       require(option.name != key,
               "outside force " + name + " has an option '" + option.name + "', which scenes have for every force");
   return {name, std::move(description), options.info(),
@@ -46,7 +46,7 @@ NamedOutsideForce named_outside_force(std::string name, std::string description,
           }};
 }
 
-/// All outside forces by name: "floor" and what was added.
+/// All outside forces by name: "floor", "pressure" and what was added.
 Registry<NamedOutsideForce>& outside_forces();
 
 }  // namespace supple

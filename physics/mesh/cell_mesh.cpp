@@ -309,6 +309,21 @@ QuadraticTetMesh quadratic_mesh(const TetMesh& mesh) {
   for (std::size_t k = 0; k < distinct.size(); ++k)
     result.nodes.row(mesh.num_nodes() + static_cast<Index>(k)) =
         (mesh.nodes.row(distinct[k][0]) + mesh.nodes.row(distinct[k][1])) / 2;
+  for (const auto& [name, group] : mesh.node_groups) {
+    NodeGroup& own = result.node_groups[name] = group;
+    std::vector<std::array<Index, 2>> sides;  // of the faces
+    for (const auto& [a, b, c, d] : group.faces) {
+      const std::array<std::array<Index, 2>, 3> of_face{{{a, b}, {a, c}, {b, c}}};
+      sides.insert(sides.end(), of_face.begin(), of_face.end());
+    }
+    std::ranges::sort(sides);
+    const auto has = [&group = group](Index v) { return std::ranges::binary_search(group.nodes, v); };
+    for (std::size_t k = 0; k < distinct.size(); ++k) {
+      const bool is_in = own.faces.empty() ? has(distinct[k][0]) && has(distinct[k][1])
+                                           : std::ranges::binary_search(sides, distinct[k]);
+      if (is_in) own.nodes.push_back(mesh.num_nodes() + static_cast<Index>(k));
+    }
+  }
   return result;
 }
 

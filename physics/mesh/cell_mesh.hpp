@@ -26,7 +26,8 @@ struct CellMesh {
   std::map<int, std::string> region_names = {};
   /// The groups of cells that are in several: by a tag that only these cells have, the tags of their groups.
   std::map<int, std::vector<int>> region_groups = {};
-  NodePlaces places = {};  ///< of the nodes in their file
+  NodePlaces places = {};       ///< of the nodes in their file
+  NodeGroups node_groups = {};  ///< of faces, edges and nodes in their file
 
   Index num_nodes() const { return nodes.rows(); }
   Index num_cells() const { return static_cast<Index>(cells.size()); }

@@ -4,7 +4,10 @@
 #include <core/types.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 namespace supple {
@@ -14,6 +17,26 @@ namespace supple {
 struct MeshNumbers {
   std::vector<std::int64_t> node = {}, cell = {}, triangle = {};
 };
+
+/// The corners of a face, ascending; the last one of a triangle is −1.
+using FaceCorners = std::array<Index, 4>;
+template <typename Corners>
+FaceCorners face_corners(const Corners& corners) {
+  FaceCorners result{0, 0, 0, -1};
+  std::ranges::copy(corners, result.begin());
+  std::ranges::sort(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(std::size(corners)));
+  return result;
+}
+
+/// A group of faces, edges or nodes.
+struct NodeGroup {
+  std::vector<Index> nodes = {};        ///< ascending
+  std::vector<FaceCorners> faces = {};  ///< ascending; none where the group is not of faces: then all between its nodes
+
+  bool operator==(const NodeGroup&) const = default;
+};
+/// Those that a file names.
+using NodeGroups = std::map<std::string, NodeGroup>;
 
 /// Where the nodes of a mesh stand in the list of the file that it was read from. The two differ where the file lists nodes
 /// that no cell has, which are dropped. Users, and the files that they write, call nodes by these places, from 0.

@@ -25,7 +25,9 @@ namespace supple {
 
 /// Any ForceModel with lumped masses (for heat: capacities [J/K]) and fixed nodes, whose unknowns are zero. Unknowns
 /// are the displacements (temperatures) of the free nodes, interleaved (x₀ y₀ z₀ x₁ …); expand() and restrict() go to
-/// and from vectors over all nodes. Forces and tangents are evaluated in packs of eight components; sums have a fixed
+/// and from vectors over all nodes. A node that slides, held along some of its axes, keeps three unknowns: where it is held,
+/// the model sees no displacement and the unknown is alone on a spring, so fast that its frequency is above all of the
+/// object's: it stays zero, and every method that knows nodes of three unknowns works. Forces and tangents are evaluated in packs of eight components; sums have a fixed
 /// order, so results do not depend on the number of threads.
 template <typename Model>
 class FullSystem {
@@ -37,14 +39,18 @@ class FullSystem {
   static constexpr bool symmetric_tangent = has_symmetric_tangent<Model>();
 
   /// \param nodal_mass  n, > 0 [kg].  \param fixed_nodes  nodes that never move, in any order.
-  FullSystem(Model model, Vector nodal_mass, const std::vector<Index>& fixed_nodes = {})
-      : FullSystem(std::make_shared<const Model>(std::move(model)), std::move(nodal_mass), fixed_nodes) {}
+  /// \param held_axes  of others that slide, for unknowns in ℝ³.
+  FullSystem(Model model, Vector nodal_mass, const std::vector<Index>& fixed_nodes = {},
+             const std::vector<HeldAxes>& held_axes = {})
+      : FullSystem(std::make_shared<const Model>(std::move(model)), std::move(nodal_mass), fixed_nodes, held_axes) {}
 
-  FullSystem(std::shared_ptr<const Model> model, Vector nodal_mass, const std::vector<Index>& fixed_nodes = {})
+  FullSystem(std::shared_ptr<const Model> model, Vector nodal_mass, const std::vector<Index>& fixed_nodes = {},
+             const std::vector<HeldAxes>& held_axes = {})
       : model_(std::move(model)),
         nodal_mass_(std::move(nodal_mass)),
-        numbering_(model_->num_nodes(), fixed_nodes),
+        numbering_(model_->num_nodes(), fixed_nodes, held_axes),
         pattern_(numbering_, node_dim) {
+    require(node_dim == 3 || held_axes.empty(), "nodes with one unknown have no axes to be held along");
     require_size("nodal_mass", nodal_mass_.size(), model_->num_nodes());
     for (Index v = 0; v < nodal_mass_.size(); ++v)
       require(nodal_mass_[v] > 0 && std::isfinite(nodal_mass_[v]), "mass of node " + std::to_string(v) + " is " +
@@ -67,6 +73,10 @@ class FullSystem {
     pattern_.build(stencils_, Model::stencil_size, incidence_);
     rest_stiffness_ = pattern_.zero_matrix();
     stiffness(Vector::Zero(dim()), rest_stiffness_);
+    if (!numbering_.held_unknowns().empty()) {
+      set_supports();
+      stiffness(Vector::Zero(dim()), rest_stiffness_);
+    }
   }
 
   Index dim() const { return numbering_.num_free() * node_dim; }
@@ -92,7 +102,7 @@ class FullSystem {
     });
     double total = 0;
     for (const double e : partial) total += e;
-    return total;
+    return total + support_energy(u);
   }
 
   void force(VectorIn u, VectorOut f) const {
@@ -100,6 +110,7 @@ class FullSystem {
     Vector full(num_nodes() * node_dim);
     full_force(expand(u), full);
     f = restrict(full);
+    add_support_force(u, f);
   }
   Vector force(VectorIn u) const {
     Vector f(dim());
@@ -122,15 +133,23 @@ class FullSystem {
     Vector full(num_nodes() * node_dim);
     sum_forces(full, [&](Index p) { return mean_force_of(packs_[p], gather(full_0, p), gather(way, p)); });
     f = restrict(full);
+    add_support_force(0.5 * (u_0 + u_1), f);
   }
 
   /// Forces in many states, a column each, dim × k. Eight states at a time go through a component together, whose numbers
   /// are read once: for eight and more, in a fraction of the time of one by one. Equal bits for any num_threads().
-  void forces(MatrixIn U, MatrixOut F) const { evaluate<false>(U, F, nullptr); }
+  void forces(MatrixIn U, MatrixOut F) const {
+    evaluate<false>(U, F, nullptr);
+    for (Index k = 0; k < F.cols(); ++k) add_support_force(U.col(k), F.col(k));
+  }
   /// And energies, k [J].
   void forces(MatrixIn U, MatrixOut F, VectorOut energies) const requires PotentialModel<Model> {
     require_size("energies", energies.size(), U.cols());
     evaluate<true>(U, F, energies.data());
+    for (Index k = 0; k < F.cols(); ++k) {
+      add_support_force(U.col(k), F.col(k));
+      energies[k] += support_energy(U.col(k));
+    }
   }
 
   /// K becomes the tangent stiffness; its pattern, the same at every call, is set up when K does not have it
@@ -138,6 +157,7 @@ class FullSystem {
   void stiffness(VectorIn u, SparseMatrix& K) const {
     const Vector full = expand(u);
     sum_tangents(K, [&](Index p) { return packs_[p].stiffness(gather(full, p)); });
+    hold(K, 1);
   }
   SparseMatrix stiffness(VectorIn u) const {
     SparseMatrix K = pattern_.zero_matrix();
@@ -148,6 +168,7 @@ class FullSystem {
   void mean_stiffness(VectorIn u_0, VectorIn u_1, SparseMatrix& K) const {
     const Vector full_0 = expand(u_0), way = expand(u_1 - u_0);
     sum_tangents(K, [&](Index p) { return mean_stiffness_of(packs_[p], gather(full_0, p), gather(way, p)); });
+    hold(K, 0.5);
   }
   const SparseMatrix& rest_stiffness() const { return rest_stiffness_; }
 
@@ -183,6 +204,7 @@ class FullSystem {
         result.force.segment<3>(3 * f) += nodal_mass_[numbering_.free_nodes()[f]] * loads.gravity;
     for (const NodalForce& load : loads.forces)
       if (const Index f = numbering_.free_index(load.node); f >= 0) result.force.segment<3>(3 * f) += load.force;
+    for (const Index i : numbering_.held_unknowns()) result.force[i] = 0;
     add_springs(loads.springs, result);
     result.others = outside_terms(loads.others, numbering_);
     return result;
@@ -193,13 +215,62 @@ class FullSystem {
   /// Displacement of a node [m], zero where fixed.
   Point displacement(VectorIn u, Index node) const requires(node_dim == 3) {
     const Index f = numbering_.free_index(node);
-    return f < 0 ? Point(Point::Zero()) : Point(u.segment<3>(3 * f));
+    if (f < 0) return Point::Zero();
+    Point result = u.segment<3>(3 * f);
+    for (int c = 0; c < 3; ++c)
+      if (is_held(3 * f + c)) result[c] = 0;
+    return result;
   }
   /// Values at all nodes → at the unknowns.
   Vector restrict(VectorIn full) const { return numbering_.restrict(full, node_dim); }
 
  private:
   static constexpr Index packs_per_chunk = 64;
+
+  bool is_held(Index unknown) const { return std::ranges::binary_search(numbering_.held_unknowns(), unknown); }
+
+  /// The springs of held unknowns, and the entries of K that couple them to others. All have the same eigenvalue, above those
+  /// of the rest by Gershgorin's theorem for M^-½ K M^-½.
+  void set_supports() {
+    const std::vector<Index>& held = numbering_.held_unknowns();
+    std::vector<char> is_held(static_cast<std::size_t>(dim()), false);
+    for (const Index i : held) is_held[static_cast<std::size_t>(i)] = true;
+    double bound = 0;
+    for (Index j = 0; j < dim(); ++j) {
+      double sum = 0;
+      for (Index p = rest_stiffness_.outerIndexPtr()[j]; p < rest_stiffness_.outerIndexPtr()[j + 1]; ++p) {
+        const Index i = rest_stiffness_.innerIndexPtr()[p];
+        if (i == j && is_held[static_cast<std::size_t>(j)])
+          held_diagonal_.push_back(p);
+        else if (is_held[static_cast<std::size_t>(i)] || is_held[static_cast<std::size_t>(j)])
+          uncoupled_.push_back(p);
+        else
+          sum += std::abs(rest_stiffness_.valuePtr()[p]) / std::sqrt(mass_[i] * mass_[j]);
+      }
+      bound = std::max(bound, sum);
+    }
+    support_stiffness_ = (bound > 0 ? bound : 1) * mass_(held);
+  }
+  /// Takes held unknowns out of K; their springs enter it, times `share`.
+  void hold(SparseMatrix& K, double share) const {
+    for (const Index p : uncoupled_) K.valuePtr()[p] = 0;
+    for (std::size_t k = 0; k < held_diagonal_.size(); ++k)
+      K.valuePtr()[held_diagonal_[k]] = share * support_stiffness_[static_cast<Index>(k)];
+  }
+  void add_support_force(VectorIn u, VectorOut f) const {
+    for (Index k = 0; k < support_stiffness_.size(); ++k) {
+      const Index i = numbering_.held_unknowns()[static_cast<std::size_t>(k)];
+      f[i] += support_stiffness_[k] * u[i];
+    }
+  }
+  double support_energy(VectorIn u) const {
+    double sum = 0;
+    for (Index k = 0; k < support_stiffness_.size(); ++k) {
+      const double displacement = u[numbering_.held_unknowns()[static_cast<std::size_t>(k)]];
+      sum += 0.5 * support_stiffness_[k] * displacement * displacement;
+    }
+    return sum;
+  }
 
   Index num_chunks() const { return (static_cast<Index>(packs_.size()) + packs_per_chunk - 1) / packs_per_chunk; }
 
@@ -276,7 +347,7 @@ class FullSystem {
       for (int c = 0; c < 3; ++c, ++row) {
         sum.stiffness[row] = spring.stiffness;
         sum.targets[row] = spring.displacement[c];
-        if (f < 0) continue;
+        if (f < 0 || is_held(3 * f + c)) continue;
         rows.emplace_back(row, 3 * f + c, 1);
         diagonal.emplace_back(3 * f + c, 3 * f + c, spring.stiffness);
       }
@@ -309,6 +380,7 @@ class FullSystem {
           for (int c = 0; c < node_dim; ++c)
             u[numbering_.free_nodes()[v] * node_dim + c].set(k, from[v * node_dim + c]);
       }
+      for (const Index i : numbering_.held_unknowns()) u[3 * numbering_.free_nodes()[i / 3] + i % 3] = Pack(0.0);
       std::array<Pack, pieces> e;
       parallel_for(pieces, [&](Index piece) {
         Pack* const f = sums(piece);
@@ -341,6 +413,7 @@ class FullSystem {
             const Index row = numbering_.free_nodes()[v] * node_dim + c;
             to[v * node_dim + c] = sums(0)[row][k] + sums(1)[row][k];
           }
+        for (const Index i : numbering_.held_unknowns()) to[i] = 0;
         if constexpr (with_energies) energies[first + k] = e[0][k] + e[1][k];
       }
     }
@@ -366,6 +439,8 @@ class FullSystem {
   NodeIncidence incidence_;
   NodeBlockPattern pattern_;
   SparseMatrix rest_stiffness_;
+  Vector support_stiffness_;                      // of held unknowns [N/m]
+  std::vector<Index> held_diagonal_, uncoupled_;  // places of theirs among the values of K
 };
 
 }  // namespace supple

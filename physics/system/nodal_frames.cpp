@@ -49,6 +49,8 @@ std::vector<BlockRotations> nodal_frames(const Points& X, const RowMatrix& U, st
           for (int c = 0; c < 9; ++c) R[k][v](c) = rotation(c)[static_cast<int>(k)];
       }
     });
+    for (const Index i : numbering.held_unknowns())
+      for (std::vector<Matrix3<double>>& of_state : R) of_state[i / 3].setIdentity();
     for (std::vector<Matrix3<double>>& of_state : R) frames.emplace_back(std::move(of_state));
   }
   return frames;

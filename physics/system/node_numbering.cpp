@@ -7,7 +7,9 @@
 
 namespace supple {
 
-NodeNumbering::NodeNumbering(Index num_nodes, const std::vector<Index>& fixed_nodes) : free_index_(num_nodes, 0) {
+NodeNumbering::NodeNumbering(Index num_nodes, const std::vector<Index>& fixed_nodes,
+                             const std::vector<HeldAxes>& held_axes)
+    : free_index_(num_nodes, 0) {
   for (const Index v : fixed_nodes) {
     require(v >= 0 && v < num_nodes,
             "fixed node " + std::to_string(v) + " does not exist, expected 0 to " + std::to_string(num_nodes - 1));
@@ -18,7 +20,18 @@ NodeNumbering::NodeNumbering(Index num_nodes, const std::vector<Index>& fixed_no
       free_index_[v] = num_free();
       free_nodes_.push_back(v);
     }
-  require(!free_nodes_.empty(), "all nodes are fixed, nothing can move");
+  for (const auto& [v, axes] : held_axes) {
+    require(v >= 0 && v < num_nodes,
+            "held node " + std::to_string(v) + " does not exist, expected 0 to " + std::to_string(num_nodes - 1));
+    require(axes >= 1 && axes <= HeldAxes::all, "axes of node " + std::to_string(v) + " are " + std::to_string(axes) +
+                                                    ", expected a sum of 1, 2 and 4 for x, y and z");
+    if (free_index_[v] < 0) continue;
+    for (int c = 0; c < 3; ++c)
+      if (axes >> c & 1) held_unknowns_.push_back(3 * free_index_[v] + c);
+  }
+  std::ranges::sort(held_unknowns_);
+  held_unknowns_.erase(std::unique(held_unknowns_.begin(), held_unknowns_.end()), held_unknowns_.end());
+  require(static_cast<Index>(held_unknowns_.size()) < 3 * num_free(), "all nodes are fixed, nothing can move");
 }
 
 std::vector<Index> NodeNumbering::fixed_nodes() const {
@@ -30,19 +43,21 @@ std::vector<Index> NodeNumbering::fixed_nodes() const {
 
 Vector NodeNumbering::expand(VectorIn free, int node_dim) const {
   require_size("u", free.size(), num_free() * node_dim);
-  if (num_free() == num_nodes()) return free;
+  if (num_free() == num_nodes() && held_unknowns_.empty()) return free;
   Vector full = Vector::Zero(num_nodes() * node_dim);
   for (Index f = 0; f < num_free(); ++f)
     full.segment(free_nodes_[f] * node_dim, node_dim) = free.segment(f * node_dim, node_dim);
+  for (const Index i : held_unknowns_) full[3 * free_nodes_[i / 3] + i % 3] = 0;
   return full;
 }
 
 Vector NodeNumbering::restrict(VectorIn full, int node_dim) const {
   require_size("the vector over all nodes", full.size(), num_nodes() * node_dim);
-  if (num_free() == num_nodes()) return full;
+  if (num_free() == num_nodes() && held_unknowns_.empty()) return full;
   Vector free(num_free() * node_dim);
   for (Index f = 0; f < num_free(); ++f)
     free.segment(f * node_dim, node_dim) = full.segment(free_nodes_[f] * node_dim, node_dim);
+  for (const Index i : held_unknowns_) free[i] = 0;
   return free;
 }
 

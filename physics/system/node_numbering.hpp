@@ -1,7 +1,8 @@
 #pragma once
-/// \file Numbering of free nodes, components at each node, and the sparsity pattern that follows.
+/// \file Numbering of free nodes, axes that supports hold, components at each node, and the sparsity pattern that follows.
 
 #include <core/types.hpp>
+#include <physics/system/held_axes.hpp>
 
 #include <cstdint>
 #include <span>
@@ -9,23 +10,28 @@
 
 namespace supple {
 
-/// Free nodes in ascending order are numbered 0 … num_free − 1; fixed nodes have no number.
+/// Free nodes in ascending order are numbered 0 … num_free − 1; fixed nodes have no number. A free node that slides, held
+/// along one or two axes, keeps an unknown for each of its axes; those of held ones are zero in every state.
 class NodeNumbering {
  public:
-  /// \throws std::invalid_argument for a fixed node outside 0 … num_nodes − 1, or when no node stays free.
-  NodeNumbering(Index num_nodes, const std::vector<Index>& fixed_nodes);
+  /// \param held_axes  of nodes that slide; what they say of fixed nodes changes nothing.
+  /// \throws std::invalid_argument for a node outside 0 … num_nodes − 1, other axes than there are, or when nothing can move.
+  NodeNumbering(Index num_nodes, const std::vector<Index>& fixed_nodes, const std::vector<HeldAxes>& held_axes = {});
 
   Index num_nodes() const { return static_cast<Index>(free_index_.size()); }
   Index num_free() const { return static_cast<Index>(free_nodes_.size()); }
   Index free_index(Index node) const { return free_index_[node]; }  ///< −1: fixed
   const std::vector<Index>& free_nodes() const { return free_nodes_; }
   std::vector<Index> fixed_nodes() const;
+  /// Unknowns that supports hold, 3 f + axis of free node f, ascending.
+  const std::vector<Index>& held_unknowns() const { return held_unknowns_; }
 
+  /// Unknowns → values at all nodes, zero where held, and back. Only nodes with three unknowns slide.
   Vector expand(VectorIn free, int node_dim) const;
   Vector restrict(VectorIn full, int node_dim) const;
 
  private:
-  std::vector<Index> free_index_, free_nodes_;
+  std::vector<Index> free_index_, free_nodes_, held_unknowns_;
 };
 
 /// For each node the places where it occurs in the stencils: component · stencil_size + corner, ascending.

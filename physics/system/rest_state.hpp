@@ -29,6 +29,7 @@ struct RestState {
     RowMatrix full = RowMatrix::Zero(node_dim * numbering.num_nodes(), columns.cols());
     for (Index v = 0; v < numbering.num_free(); ++v)
       full.middleRows(node_dim * numbering.free_nodes()[v], node_dim) = columns.middleRows(node_dim * v, node_dim);
+    for (const Index i : numbering.held_unknowns()) full.row(3 * numbering.free_nodes()[i / 3] + i % 3).setZero();
     return full;
   }
   /// And back.
@@ -36,6 +37,7 @@ struct RestState {
     Matrix columns(mass.size(), full.cols());
     for (Index v = 0; v < numbering.num_free(); ++v)
       columns.middleRows(node_dim * v, node_dim) = full.middleRows(node_dim * numbering.free_nodes()[v], node_dim);
+    for (const Index i : numbering.held_unknowns()) columns.row(i).setZero();
     return columns;
   }
   /// \throws std::invalid_argument unless the object is in ℝ³ and knows where its nodes are.

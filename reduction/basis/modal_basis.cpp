@@ -28,9 +28,10 @@ VibrationModes vibration_modes(const RestState& object, const ModeOptions& optio
                                  std::to_string(result.components.free.size()) +
                                  " parts that nothing holds), so at least " + std::to_string(result.num_rigid + 1) +
                                  " modes are needed, not " + std::to_string(options.num_modes));
-  require(options.num_modes <= mass.size(), "number of modes is " + std::to_string(options.num_modes) +
-                                                ", but the system has only " + std::to_string(mass.size()) +
-                                                " unknowns");
+  const Index free_unknowns = mass.size() - static_cast<Index>(numbering.held_unknowns().size());
+  require(options.num_modes <= free_unknowns, "number of modes is " + std::to_string(options.num_modes) +
+                                                  ", but the system has only " + std::to_string(free_unknowns) +
+                                                  " unknowns");
 
   const auto inputs = [&](Digest& digest) {
     digest.add(object.K).add(mass).add(rigid).add(num_flexible).add(options.tolerance).add(options.seed);

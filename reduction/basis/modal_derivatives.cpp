@@ -171,13 +171,17 @@ DenseBasis ModalDerivatives::with_derivatives(const RestState& object, const Vib
 
   // rigid or affine motions and the modes, which stay whatever the dimension
   const Index num_flexible = modes.vectors.cols() - modes.num_rigid;
-  const RowMatrix affine = affine_fields ? supple::affine_fields(object.positions, modes.components) : RowMatrix();
+  FreeComponents movable = modes.components;  // also parts that slide, which may turn and stretch in their planes
+  movable.free.insert(movable.free.end(), movable.sliding.begin(), movable.sliding.end());
+  const RowMatrix affine = affine_fields ? supple::affine_fields(object.positions, movable) : RowMatrix();
   const Index num_global = affine_fields ? 3 * affine.cols() : modes.num_rigid;
   RowMatrix start = RowMatrix::Zero(mass.size(), num_global + num_flexible);
   if (affine_fields) {
     for (Index v = 0; v < affine.rows(); ++v)
       for (int x = 0; x < 3; ++x)
         for (Index k = 0; k < affine.cols(); ++k) start(3 * v + x, 3 * k + x) = affine(v, k);
+    for (const Index i : object.numbering.held_unknowns())
+      start.row(3 * object.numbering.free_nodes()[i / 3] + i % 3).setZero();
   } else {
     start.leftCols(num_global) = modes.vectors.leftCols(num_global);
   }

@@ -21,6 +21,11 @@ DenseBasis PcaBasis::operator()(const RestState& object) const {
   for (const Index v : object.numbering.fixed_nodes())
     require(snapshots.middleRows(node_dim * v, node_dim).cwiseAbs().maxCoeff() <= rounding * largest,
             "a snapshot moves node " + std::to_string(v) + ", which is fixed");
+  for (const Index i : object.numbering.held_unknowns()) {
+    const Index v = object.numbering.free_nodes()[i / 3];
+    require(snapshots.row(3 * v + i % 3).cwiseAbs().maxCoeff() <= rounding * largest,
+            "a snapshot moves node " + std::to_string(v) + " along " + "xyz"[i % 3] + ", where it is held");
+  }
 
   const double unit = std::ldexp(1.0, std::ilogb(largest));  // so that squares are numbers
   const Vector root = object.mass.cwiseSqrt();

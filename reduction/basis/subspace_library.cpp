@@ -129,8 +129,34 @@ void require_promises(const std::string& name, const AnyBasis& basis, const Rest
         for (const Index node : object.numbering.fixed_nodes())
           expect(u.segment(object.node_dim * node, object.node_dim).isZero(0),
                  "moves node " + std::to_string(node) + ", which is held");
+        for (const Index i : object.numbering.held_unknowns()) {
+          const Index node = object.numbering.free_nodes()[i / 3];
+          expect(u[3 * node + i % 3] == 0,
+                 "moves node " + std::to_string(node) + " along " + "xyz"[i % 3] + ", where it is held");
+        }
         const double ratio = std::sqrt(u.cwiseAbs2().dot(object.mass_of_rows())) / q.norm();
         expect(std::abs(ratio - 1) < 1e-6, "is not orthonormal with respect to the masses");
+      },
+      basis);
+}
+
+/// The subspace without motions along axes that are held. Fields that act along all axes alike cannot respect that: the
+/// basis becomes dense.
+AnyBasis within_supports(const AnyBasis& basis, const RestState& object) {
+  if (object.numbering.held_unknowns().empty()) return basis;
+  return std::visit(
+      [&](const auto& subspace) -> AnyBasis {
+        if constexpr (std::remove_cvref_t<decltype(*subspace)>::block == 1) {
+          return subspace;
+        } else {
+          RowMatrix U = subspace->dense();
+          for (const Index i : object.numbering.held_unknowns())
+            U.row(3 * object.numbering.free_nodes()[i / 3] + i % 3).setZero();
+          Orthonormalized within = mass_orthonormalize(U, object.mass_of_rows());
+          SubspaceReport report = subspace->report;
+          report.dropped += within.dropped;
+          return share(DenseBasis{std::move(within.W), std::move(report)});
+        }
       },
       basis);
 }
@@ -197,7 +223,7 @@ Index missing_rigid_motions(const RestState& object, const AnyBasis& basis) {
 AnyBasis build_subspace(const RestState& object, const SubspaceChoice& choice, const SubspaceRun& run) {
   const std::vector<Choice> parts = choices_of(choice.name);
   const auto build = [&](const Choice& part) {
-    AnyBasis basis = subspaces().at(part.name).build(object, choice, part.options, run);
+    const AnyBasis basis = within_supports(subspaces().at(part.name).build(object, choice, part.options, run), object);
     require_promises(part.name, basis, object);
     return basis;
   };

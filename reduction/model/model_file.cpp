@@ -16,7 +16,7 @@ namespace supple {
 namespace {
 
 constexpr const char* format_name = "supple reduced model";
-constexpr const char* format_version = "1";
+constexpr const char *format_version = "1", *format_with_sliding_nodes = "2";
 
 std::vector<std::int64_t> widen(const std::vector<Index>& values) {
   return {values.begin(), values.end()};
@@ -57,6 +57,20 @@ void add_body(TensorFileWriter& file, const SolidOf<Mesh>& solid) {
   if (!std::same_as<Mesh, TetMesh> && solid.component == SolidComponent::GaussPoint)
     file.metadata[component_key] = gauss_point;
   file.add(arrays<Mesh>.cells, narrow(solid.mesh.cells));
+  if (!solid.mesh.node_groups.empty()) {
+    std::vector<std::int64_t> nodes, ends, faces, face_ends;
+    for (const auto& [name, group] : solid.mesh.node_groups) {
+      file.metadata["node_group." + std::to_string(ends.size())] = name;
+      nodes.insert(nodes.end(), group.nodes.begin(), group.nodes.end());
+      ends.push_back(static_cast<std::int64_t>(nodes.size()));
+      for (const FaceCorners& face : group.faces) faces.insert(faces.end(), face.begin(), face.end());
+      face_ends.push_back(static_cast<std::int64_t>(faces.size() / 4));
+    }
+    file.add("mesh.node_groups", nodes);
+    file.add("mesh.node_group_ends", ends);
+    file.add("mesh.face_groups", faces);
+    file.add("mesh.face_group_ends", face_ends);
+  }
   if (!solid.mesh.region.empty())
     file.add("mesh.region", std::vector<std::int32_t>(solid.mesh.region.begin(), solid.mesh.region.end()));
   file.add("material.parameters", solid.parameters);
@@ -143,12 +157,53 @@ class ModelReader {
   const TensorFile file;
 };
 
+/// Parts of a list that end at these places: calls take(k, begin, end) for each.
+template <typename Take>
+void visit_parts(const ModelReader& in, const std::string& name, std::size_t size, const Take& take) {
+  std::size_t begin = 0, k = 0;
+  for (const std::int64_t end : in.file.integers(name)) {
+    if (end < static_cast<std::int64_t>(begin) || end > static_cast<std::int64_t>(size))
+      throw in.fail(name + " are not ascending numbers up to " + std::to_string(size));
+    take(k++, begin, static_cast<std::size_t>(end));
+    begin = static_cast<std::size_t>(end);
+  }
+}
+
+NodeGroups read_node_groups(const ModelReader& in, Index num_nodes) {
+  NodeGroups groups;
+  if (!in.file.contains("mesh.node_groups")) return groups;
+  const auto name = [&](std::size_t k) { return in.file.metadata("node_group." + std::to_string(k)); };
+  const auto nodes = in.file.integers("mesh.node_groups"), faces = in.file.integers("mesh.face_groups");
+  visit_parts(in, "mesh.node_group_ends", nodes.size(), [&](std::size_t k, std::size_t begin, std::size_t end) {
+    std::vector<Index>& group = groups[name(k)].nodes;
+    for (std::size_t j = begin; j < end; ++j) {
+      if (nodes[j] < 0 || nodes[j] >= num_nodes || (!group.empty() && nodes[j] <= group.back()))
+        throw in.fail("mesh.node_groups has " + std::to_string(nodes[j]) +
+                      ", expected ascending nodes of each group from 0 to " + std::to_string(num_nodes - 1));
+      group.push_back(nodes[j]);
+    }
+  });
+  visit_parts(in, "mesh.face_group_ends", faces.size() / 4, [&](std::size_t k, std::size_t begin, std::size_t end) {
+    std::vector<FaceCorners>& group = groups[name(k)].faces;
+    for (std::size_t j = begin; j < end; ++j) {
+      const FaceCorners face{faces[4 * j], faces[4 * j + 1], faces[4 * j + 2], faces[4 * j + 3]};
+      const std::span corners(face.begin(), face[3] < 0 ? 3u : 4u);
+      if (corners.front() < 0 || corners.back() >= num_nodes || face[3] < -1 ||
+          !std::ranges::is_sorted(corners, std::less_equal()) || (!group.empty() && !(group.back() < face)))
+        throw in.fail("mesh.face_groups has a face whose corners are no ascending nodes, or faces that do not ascend");
+      group.push_back(face);
+    }
+  });
+  return groups;
+}
+
 template <typename Mesh>
 SolidOf<Mesh> read_solid(const ModelReader& in, Points nodes) {
   SolidOf<Mesh> solid;
   solid.mesh.nodes = std::move(nodes);
   solid.mesh.cells = in.elements<Mesh::nodes_per_cell>(arrays<Mesh>.cells, solid.mesh.num_nodes());
   const Index m = solid.mesh.num_cells();
+  solid.mesh.node_groups = read_node_groups(in, solid.mesh.num_nodes());
   if (in.file.metadata().contains(component_key)) {
     const std::string& component = in.file.metadata(component_key);
     if (std::same_as<Mesh, TetMesh> || component != gauss_point)
@@ -224,6 +279,26 @@ Body read_body(const ModelReader& in, Points nodes) {
   return read_solid<TetMesh>(in, std::move(nodes));
 }
 
+/// Supports of nodes that slide; none in files without them.
+std::vector<HeldAxes> read_held_axes(const ModelReader& in, Index n, const std::vector<Index>& fixed_nodes) {
+  std::vector<HeldAxes> held;
+  if (!in.file.contains("held_axes.nodes")) return held;
+  const auto nodes = in.file.integers("held_axes.nodes"), axes = in.file.integers("held_axes.axes");
+  if (nodes.size() != axes.size())
+    throw in.fail("held_axes.axes has " + std::to_string(axes.size()) + " entries, expected " +
+                  std::to_string(nodes.size()));
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    if (nodes[k] < 0 || nodes[k] >= n || std::ranges::binary_search(fixed_nodes, Index(nodes[k])))
+      throw in.fail("held_axes.nodes names node " + std::to_string(nodes[k]) + ", expected 0 to " +
+                    std::to_string(n - 1) + " and none that is fixed");
+    if (!held.empty() && nodes[k] <= held.back().node) throw in.fail("held_axes.nodes are not ascending");
+    if (axes[k] < 1 || axes[k] >= HeldAxes::all)
+      throw in.fail("held_axes.axes has " + std::to_string(axes[k]) + ", expected 1 to 6");
+    held.push_back({Index(nodes[k]), static_cast<std::uint8_t>(axes[k])});
+  }
+  return held;
+}
+
 /// \throws InputError unless the basis has columns, UᵀMU = I, and leaves fixed nodes where they are.
 void check_basis(const ModelReader& in, const ReducedModel& model) {
   const Vector mass = nodal_mass(model.body);
@@ -235,6 +310,10 @@ void check_basis(const ModelReader& in, const ReducedModel& model) {
         for (const Index v : fixed_nodes(model.body))
           if (!W.middleRows(v * rows_of_node, rows_of_node).isZero(0))
             throw in.fail("subspace.W moves node " + std::to_string(v) + ", which is fixed");
+        for (const auto& [v, axes] : held_axes(model.body))
+          for (Index c = 0; c < 3; ++c)
+            if ((axes >> c & 1) && (rows_of_node != 3 || !W.row(3 * v + c).isZero(0)))
+              throw in.fail("subspace.W moves node " + std::to_string(v) + " along " + "xyz"[c] + ", where it is held");
         const Vector masses = mass.replicate(1, rows_of_node).transpose().reshaped();
         Random random(1);
         const Matrix X = Matrix::NullaryExpr(W.cols(), 4, [&] { return random.normal(); });
@@ -273,7 +352,7 @@ ErrorIndicator read_indicator(const ModelReader& in, const ReducedModel& model) 
 void save_model(const std::filesystem::path& path, const ReducedModel& model) {
   TensorFileWriter file;
   file.metadata = {{"format", format_name},
-                   {"format_version", format_version},
+                   {"format_version", held_axes(model.body).empty() ? format_version : format_with_sliding_nodes},
                    {"material.law", std::string(law(model.body))},
                    {"subspace.name", model.subspace_name}};
   for (const auto& [key, text] : model.provenance) file.metadata["provenance." + key] = text;
@@ -284,6 +363,15 @@ void save_model(const std::filesystem::path& path, const ReducedModel& model) {
   }
   std::visit([&](const auto& body) { add_body(file, body); }, model.body);
   file.add("fixed_nodes", widen(fixed_nodes(model.body)));
+  if (const std::vector<HeldAxes>& held = held_axes(model.body); !held.empty()) {
+    std::vector<Index> nodes, axes;
+    for (const HeldAxes& one : held) {
+      nodes.push_back(one.node);
+      axes.push_back(one.axes);
+    }
+    file.add("held_axes.nodes", widen(nodes));
+    file.add("held_axes.axes", widen(axes));
+  }
   file.add("damping", (Vector(2) << damping(model.body).alpha, damping(model.body).beta).finished());
 
   std::visit(
@@ -315,8 +403,10 @@ ReducedModel load_model(const std::filesystem::path& path) {
   const TensorFile& file = in.file;
   if (!file.metadata().contains("format") || file.metadata("format") != format_name)
     throw in.fail("this is not a reduced model of Supple");
-  if (file.metadata("format_version") != format_version)
-    throw in.fail("the model has version " + file.metadata("format_version") + ", expected " + format_version);
+  if (const std::string& version = file.metadata("format_version");
+      version != format_version && version != format_with_sliding_nodes)
+    throw in.fail("the model has version " + version + ", expected " + format_version + " or " +
+                  format_with_sliding_nodes);
 
   ReducedModel model;
   const Points nodes = in.finite_matrix("mesh.nodes", TensorFile::any, 3);
@@ -335,6 +425,7 @@ ReducedModel load_model(const std::filesystem::path& path) {
                           std::to_string(body.fixed_nodes.back()));
           body.fixed_nodes.push_back(v);
         }
+        body.held_axes = read_held_axes(in, n, body.fixed_nodes);
         const Vector damping = in.finite_vector("damping", 2);
         if ((damping.array() < 0).any()) throw in.fail("damping is negative, expected 0 or more");
         body.damping = {damping[0], damping[1]};

@@ -15,7 +15,7 @@ template <typename Visitor>
 void with_object(const Body& body, const ReduceOptions& options, StageClock& stage, Visitor&& visit) {
   with_force_model(body, [&]<typename Model>(const std::shared_ptr<const Model>& model) {
     const auto system = stage("full system", [&](auto) {
-      return std::make_shared<const FullSystem<Model>>(model, nodal_mass(body), fixed_nodes(body));
+      return std::make_shared<const FullSystem<Model>>(model, nodal_mass(body), fixed_nodes(body), held_axes(body));
     });
     const SubspaceRun run{
         stage.progress(),

@@ -7,8 +7,15 @@ FreeComponents find_free_components(std::span<const Index> stencils, Index stenc
   FreeComponents result{connected_components(stencils, stencil_size, numbering.num_nodes()), {}};
   std::vector<bool> held(result.components.count, false);
   for (const Index v : numbering.fixed_nodes()) held[result.components.of_node[v]] = true;
-  for (Index c = 0; c < result.components.count; ++c)
+  std::vector<bool> slides(result.components.count, false);
+  for (const Index i : numbering.held_unknowns()) {
+    const Index c = result.components.of_node[numbering.free_nodes()[i / 3]];
+    if (!held[c]) slides[c] = held[c] = true;
+  }
+  for (Index c = 0; c < result.components.count; ++c) {
     if (!held[c]) result.free.push_back(c);
+    if (held[c] && slides[c]) result.sliding.push_back(c);
+  }
   return result;
 }
 

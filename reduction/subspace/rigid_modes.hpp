@@ -6,10 +6,11 @@
 
 namespace supple {
 
-/// Components of an object that no fixed node holds.
+/// Components of an object that no support holds anywhere.
 struct FreeComponents {
   NodeComponents components;
-  std::vector<Index> free;  ///< numbers of the components without a fixed node
+  std::vector<Index> free;          ///< numbers of the components without a node that is fixed or slides
+  std::vector<Index> sliding = {};  ///< of those without a fixed node some of whose nodes slide
 
   Index num_rigid_modes() const { return 6 * static_cast<Index>(free.size()); }
 };

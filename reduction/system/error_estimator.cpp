@@ -40,6 +40,12 @@ MotionErrorEstimator::MotionErrorEstimator(ErrorEstimator states, const Rayleigh
       displacement_(lacking_),
       velocity_(lacking_) {}
 
+void MotionErrorEstimator::start_from(VectorIn q, VectorIn force) {
+  require(time_ == 0, "the motion has begun");
+  lacking_ = states_(q, force).lacking;
+  displacement_ = lacking_.cwiseQuotient(states_.stiffness());
+}
+
 ErrorEstimate MotionErrorEstimator::advance(double time, VectorIn q, VectorIn force) {
   require(time > time_, "times of a motion do not ascend");
   ErrorEstimate estimate = states_(q, force);

@@ -64,7 +64,7 @@ class ErrorEstimator {
   double scale_, trained_size_;
 };
 
-/// Estimates the error of a motion from rest: what the forces lack at each time, by an ErrorEstimator, moves the softest modes
+/// Estimates the error of a motion from rest or from an equilibrium: what the forces lack at each time, by an ErrorEstimator, moves the softest modes
 /// as oscillators, so that it adds up where it acts in their rhythm. A motion that is late is wrong by that, whatever its
 /// states look like. Linear about rest: good for as long as the error is small beside the motion.
 class MotionErrorEstimator {
@@ -73,6 +73,9 @@ class MotionErrorEstimator {
       4;  ///< steps from call to call that simulations take: as good, for a quarter of the time
 
   MotionErrorEstimator(ErrorEstimator states, const RayleighDamping& damping);
+
+  /// The motion starts from an equilibrium, whose error is that of statics. To be called before advance().
+  void start_from(VectorIn q, VectorIn force);
 
   /// To be called in the order of times, not necessarily after each step; modes with less than two calls a period are
   /// taken to follow at once. \param time  [s], from 0.

@@ -2,7 +2,7 @@ if(TARGET supple)
   supple_test(app LABEL unit
     LINKS supple::reduction supple::io supple::pictures nlohmann_json::nlohmann_json
     SOURCES app/command_line_test.cpp app/compare_selectors_test.cpp app/edit_command_test.cpp app/model_search_test.cpp
-            app/pareto_test.cpp app/reduce_command_test.cpp app/select_command_test.cpp app/simulate_command_test.cpp app/stress_command_test.cpp
+            app/pareto_test.cpp app/reduce_command_test.cpp app/select_command_test.cpp app/simulate_command_test.cpp app/static_command_test.cpp app/stress_command_test.cpp
             app/supple_process.cpp)
   target_compile_definitions(test_app PRIVATE SUPPLE_COMMAND="$<TARGET_FILE:supple>"
     SUPPLE_README="${PROJECT_SOURCE_DIR}/README.md")

@@ -216,6 +216,7 @@ std::vector<Target> reader_targets() {
   return {solids("gmsh", ".msh"),
           solids("tetgen", ".node"),
           solids("medit", ".mesh"),
+          solids("abaqus", ".inp"),
           solids("vega", ".veg"),
           solids("vtk", ".vtk"),
           solids("vtu", ".vtu", deflated),

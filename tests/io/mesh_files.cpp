@@ -88,11 +88,12 @@ std::string gmsh_22_binary(const Mesh& mesh, bool big) {
   return s + "\n$EndElements\n$ElementData\nsome bytes: " + raw(std::int32_t{0x24456e64}) + "$EndElementData\n";
 }
 
-/// Gmsh 4.1 with a volume entity, 10 + tag, for each region.
+/// Gmsh 4.0 or 4.1 with a volume entity, 10 + tag, for each region.
 template <typename Mesh>
-std::string gmsh_41(const Mesh& mesh, bool binary) {
-  std::string s = std::string("$MeshFormat\n4.1 ") + (binary ? "1 8\n" + raw(std::int32_t{1}) + "\n" : "0 8\n") +
-                  "$EndMeshFormat\n" + physical_names(mesh);
+std::string gmsh_4(const Mesh& mesh, bool binary, bool is_40) {
+  std::string s = std::string("$MeshFormat\n") + (is_40 ? "4 " : "4.1 ") +
+                  (binary ? "1 8\n" + raw(std::int32_t{1}) + "\n" : "0 8\n") + "$EndMeshFormat\n" +
+                  physical_names(mesh);
   const auto integer = [&](Index value) {
     s += binary ? raw(static_cast<std::int32_t>(value)) : std::to_string(value) + " ";
   };
@@ -106,7 +107,9 @@ std::string gmsh_41(const Mesh& mesh, bool binary) {
   if (tags.empty()) tags = {0};
   s += "$Entities\n";
   size(1), size(0), size(0), size(static_cast<Index>(tags.size()));
-  integer(1), real(0), real(0), real(0), size(0);
+  integer(1), real(0), real(0), real(0);
+  if (is_40) real(0), real(0), real(0);  // a box of points, too
+  size(0);
   for (const int tag : tags) {
     integer(10 + tag);
     for (int c = 0; c < 6; ++c) real(c);
@@ -116,12 +119,15 @@ std::string gmsh_41(const Mesh& mesh, bool binary) {
   }
   s += "\n$EndEntities\n$Nodes\n";
   const Index n = mesh.num_nodes(), first_block = n / 3;
-  size(2), size(n), size(1), size(n);
+  size(2), size(n);
+  if (!is_40) size(1), size(n);
   for (int block = 0; block < 2; ++block) {  // the first one parametric: with coordinates on a surface
     const Index begin = block == 0 ? 0 : first_block, end = block == 0 ? first_block : n;
-    integer(block == 0 ? 2 : 3), integer(1), integer(block == 0), size(end - begin);
-    for (Index v = begin; v < end; ++v) size(v + 1);
+    const Index dim = block == 0 ? 2 : 3;
+    integer(is_40 ? 1 : dim), integer(is_40 ? dim : 1), integer(block == 0), size(end - begin);
+    for (Index v = begin; v < end && !is_40; ++v) size(v + 1);
     for (Index v = begin; v < end; ++v) {
+      if (is_40) integer(v + 1);
       for (int c = 0; c < 3; ++c) real(mesh.nodes(v, c));
       if (block == 0) real(0.25), real(0.75);
     }
@@ -132,16 +138,27 @@ std::string gmsh_41(const Mesh& mesh, bool binary) {
     if (blocks.empty() || region(mesh, blocks.back()[0]) != region(mesh, e)) blocks.emplace_back();
     blocks.back().push_back(e);
   }
-  size(static_cast<Index>(blocks.size())), size(mesh.num_cells()), size(1), size(mesh.num_cells());
+  size(static_cast<Index>(blocks.size())), size(mesh.num_cells());
+  if (!is_40) size(1), size(mesh.num_cells());
   for (const std::vector<Index>& block : blocks) {
-    integer(3), integer(10 + region(mesh, block[0])), integer(words_of<Mesh>.gmsh),
+    const Index entity = 10 + region(mesh, block[0]);
+    integer(is_40 ? entity : 3), integer(is_40 ? 3 : entity), integer(words_of<Mesh>.gmsh),
         size(static_cast<Index>(block.size()));
+    const auto tag = [&](Index value) { is_40 ? integer(value) : size(value); };
     for (const Index e : block) {
-      size(e + 1);
-      for (const Index v : in_gmsh(mesh.cells[e])) size(v + 1);
+      tag(e + 1);
+      for (const Index v : in_gmsh(mesh.cells[e])) tag(v + 1);
     }
   }
   return s + "\n$EndElements\n";
+}
+template <typename Mesh>
+std::string gmsh_40(const Mesh& mesh, bool binary) {
+  return gmsh_4(mesh, binary, true);
+}
+template <typename Mesh>
+std::string gmsh_41(const Mesh& mesh, bool binary) {
+  return gmsh_4(mesh, binary, false);
 }
 
 template <typename Mesh>
@@ -187,6 +204,32 @@ std::string vega(const Mesh& mesh) {
     s += "\n*REGION\n" + name + ", rubber\n";
   }
   return s;
+}
+
+template <typename Mesh>
+std::string abaqus(const Mesh& mesh) {
+  constexpr int size = cell_size<Mesh>;
+  const auto list = [](const auto& cell) {
+    std::string line;
+    for (std::size_t k = 0; k < cell.size(); ++k)  // in two lines where there are many
+      line += (k == 7 ? ",\n " : ", ") + std::to_string(cell[k] + 10);
+    return line + "\n";
+  };
+  std::string s = "*Heading\n** a comment, with commas\n*Part, name=\"Part 1\"\n*Node, nset=All\n";
+  for (Index v = 0; v < mesh.num_nodes(); ++v) {
+    std::string place = xyz(mesh, v);
+    std::ranges::replace(place, ' ', ',');
+    s += std::to_string(v + 10) + ", " + place + "\n";
+  }
+  s += std::string("*Element, type=") + (size == 4 ? "C3D4" : size == 8 ? "C3D8R" : "C3D10") + "\n";
+  for (Index e = 0; e < mesh.num_cells(); ++e) s += std::to_string(e + 1) + list(mesh.cells[e]);
+  for (const auto& [tag, name] : mesh.region_names) {
+    s += "*Elset, elset=" + name + "\n";
+    for (Index e = 0, in_line = 0; e < mesh.num_cells(); ++e)
+      if (region(mesh, e) == tag) s += std::to_string(e + 1) + (++in_line % 8 == 0 ? ",\n" : ", ");
+    s += "\n*Solid Section, elset=" + name + ", material=Rubber\n,\n";
+  }
+  return s + "*End Part\n*MATERIAL, NAME=rubber\n*DENSITY\n1000.,\n*ELASTIC\n1e6, 0.45\n";
 }
 
 template <typename Mesh>
@@ -340,6 +383,9 @@ std::vector<MeshFile> every_format(const Mesh& mesh) {
   std::vector<MeshFile> files{{"gmsh_22_ascii", ".msh", gmsh_22(mesh), ""},
                               {"gmsh_22_binary", ".msh", gmsh_22_binary(mesh, false), ""},
                               {"gmsh_22_big_endian", ".msh", gmsh_22_binary(mesh, true), ""},
+                              {"abaqus", ".inp", abaqus(mesh), ""},
+                              {"gmsh_40_ascii", ".msh", gmsh_40(mesh, false), ""},
+                              {"gmsh_40_binary", ".msh", gmsh_40(mesh, true), ""},
                               {"gmsh_41_ascii", ".msh", gmsh_41(mesh, false), ""},
                               {"gmsh_41_binary", ".msh", gmsh_41(mesh, true), ""},
                               {"medit_ascii", ".mesh", medit(mesh), ""},

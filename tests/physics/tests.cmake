@@ -2,7 +2,7 @@
 set_source_files_properties(physics/material/rotation_test.cpp physics/model/rods_test.cpp
   PROPERTIES COMPILE_OPTIONS $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
 supple_test(physics LABEL unit LINKS supple::physics supple::eigensolver
-  SOURCES physics/body/locking_test.cpp physics/heat/heat_conduction_test.cpp physics/material/materials_test.cpp
+  SOURCES physics/body/locking_test.cpp physics/body/supports_test.cpp physics/heat/heat_conduction_test.cpp physics/material/materials_test.cpp
           physics/material/rotation_test.cpp physics/mesh/cell_mesh_test.cpp physics/mesh/elements_test.cpp
           physics/mesh/tet_mesh_test.cpp physics/mesh/triangle_mesh_test.cpp physics/model/discrete_shell_test.cpp
           physics/model/force_model_test.cpp physics/model/rods_test.cpp physics/model/solid_conformance_test.cpp

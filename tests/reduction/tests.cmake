@@ -5,6 +5,7 @@ supple_test(reduction LABEL unit LINKS supple::reduction
           reduction/pipeline/model_series_test.cpp reduction/pipeline/reduce_test.cpp
           reduction/pipeline/selection_study_test.cpp reduction/pipeline/sound_models_test.cpp
           reduction/subspace/own_structure_test.cpp reduction/subspace/rigid_motions_test.cpp
+          reduction/subspace/sliding_supports_test.cpp
           reduction/subspace/subspace_test.cpp reduction/system/reduced_system_test.cpp
           reduction/system/stiffness_range_test.cpp reduction/training/equilibrium_fitting_test.cpp
           reduction/training/error_indicator_test.cpp reduction/training/exact_equilibria_test.cpp

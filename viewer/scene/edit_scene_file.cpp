@@ -96,21 +96,30 @@ RigidMotion read_motion(const JsonFields& fields, const HandleRegion& handle, co
 
 Loads read_loads(const JsonFields& file, const Body& body, const Reading& reading) {
   Loads loads{.gravity = file.point_or("gravity", Point::Zero(), "m/s^2")};
-  const auto nodes_of = [&](const JsonFields& fields, const char* what) {
-    NodeShares nodes = read_nodes(fields, body);
-    const auto note = held_nodes_note(fields, nodes, body, what);
-    if (note && reading.warnings) reading.warnings->push_back(*note);
-    return nodes;
+  const auto note = [&](const JsonFields& fields, const std::vector<NodalForce>& forces, const char* what) {
+    const auto text = held_nodes_note(fields, forces, body, what);
+    if (text && reading.warnings) reading.warnings->push_back(*text);
+  };
+  const auto add = [&](const JsonFields& fields, const std::vector<NodalForce>& forces, const char* what) {
+    note(fields, forces, what);
+    loads.forces.insert(loads.forces.end(), forces.begin(), forces.end());
   };
   for (const JsonFields& fields : file.objects_if("forces")) {
     const Point force = fields.point("force", "N");
-    for (const auto& [node, share] : nodes_of(fields, "force")) loads.forces.push_back({node, share * force});
+    std::vector<NodalForce> forces;
+    for (const auto& [node, share] : read_nodes(fields, body)) forces.push_back({node, share * force});
+    add(fields, forces, "force");
   }
+  for (const JsonFields& fields : file.objects_if("surface")) add(fields, read_surface_load(fields, body), "load");
   for (const JsonFields& fields : file.objects_if("springs")) {
     const double stiffness = fields.number("stiffness", positive, "N/m");
     const Point displacement = fields.point_or("displacement", Point::Zero());
-    for (const auto& [node, share] : nodes_of(fields, "spring"))
+    std::vector<NodalForce> pulls;
+    for (const auto& [node, share] : read_nodes(fields, body)) {
       loads.springs.push_back({node, share * stiffness, displacement});
+      pulls.push_back({node, Point::Constant(share)});
+    }
+    note(fields, pulls, "spring");
   }
   for (const JsonFields& fields : file.objects_if("outside")) loads.others.push_back(read_outside_force(fields, body));
   return loads;

@@ -1,9 +1,11 @@
 #include <core/text.hpp>
 #include <io/mesh/node_sets.hpp>
 #include <physics/body/surface.hpp>
+#include <physics/body/surface_shares.hpp>
 #include <viewer/scene/scene_loads.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace supple {
@@ -43,20 +45,31 @@ std::vector<Index> all_nodes(Index n) {
   return nodes;
 }
 
+/// What the rule "nodes", or the group "region" of the mesh's file, selects.
+NodeGroup read_group(const JsonFields& fields, const Body& body) {
+  const bool is_region = fields.contains("region");
+  const std::string text = fields.text(is_region ? "region" : "nodes");
+  try {
+    if (!is_region) return {select_nodes(node_positions(body), text), {}};
+    if (std::holds_alternative<Shell>(body)) throw InputError("a surface has no regions");
+    return visit_solid(body, [&](const auto& solid) -> NodeGroup {
+      NodeGroup group{nodes_of_region(solid.mesh, text), {}};
+      const auto own = solid.mesh.node_groups.find(text);  // unless cells have the name
+      return own != solid.mesh.node_groups.end() && own->second.nodes == group.nodes ? own->second : group;
+    });
+  } catch (const InputError& error) {
+    fields.fail(is_region ? "region" : "nodes", std::string("selects nothing: ") + error.what());
+  }
+}
+
 }  // namespace
 
 NodeShares read_nodes(const JsonFields& fields, const Body& body) {
-  if (fields.contains("node") + fields.contains("at") + fields.contains("nodes") != 1)
-    throw InputError(fields.source() + ": " + fields.place() + " needs one of 'node', 'at' and 'nodes'");
+  if (fields.contains("node") + fields.contains("at") + fields.contains("nodes") + fields.contains("region") != 1)
+    throw InputError(fields.source() + ": " + fields.place() + " needs one of 'node', 'at', 'nodes' and 'region'");
   if (fields.contains("node")) return {{read_node(fields, body), 1.0}};
   if (fields.contains("at")) return {{node_at(fields, node_positions(body)), 1.0}};
-  const std::string rule = fields.text("nodes");
-  std::vector<Index> nodes;
-  try {
-    nodes = select_nodes(node_positions(body), rule);
-  } catch (const InputError& error) {
-    fields.fail("nodes", std::string("selects nothing: ") + error.what());
-  }
+  const std::vector<Index> nodes = read_group(fields, body).nodes;
   const Vector mass = nodal_mass(body);
   NodeShares shares;
   double sum = 0;
@@ -65,13 +78,41 @@ NodeShares read_nodes(const JsonFields& fields, const Body& body) {
   return shares;
 }
 
-std::optional<std::string> held_nodes_note(const JsonFields& fields, const NodeShares& nodes, const Body& body,
-                                           const std::string& what) {
-  double held = 0;
-  for (const auto& [node, share] : nodes)
-    if (std::ranges::binary_search(fixed_nodes(body), node)) held += share;
-  if (held <= 0.01) return {};
-  return fields.source() + ": " + fields.place() + ": " + shown(100 * held, 3) + " % of this " + what +
+std::vector<NodalForce> read_surface_load(const JsonFields& fields, const Body& body) {
+  if (fields.contains("traction") + fields.contains("pressure") != 1)
+    throw InputError(fields.source() + ": " + fields.place() + " needs one of 'traction' and 'pressure'");
+  if (fields.contains("nodes") + fields.contains("region") != 1)
+    throw InputError(fields.source() + ": " + fields.place() + " needs one of 'nodes' and 'region'");
+  const std::vector<SurfaceShare> shares = surface_shares(body, read_group(fields, body));
+  if (shares.empty())
+    fields.fail(fields.contains("region") ? "region" : "nodes",
+                "selects no face: none of the surface has all of its nodes there");
+  std::vector<NodalForce> forces;
+  if (fields.contains("traction")) {
+    const Point traction = fields.point("traction", "Pa");
+    for (const SurfaceShare& share : shares) forces.push_back({share.node, share.area * traction});
+  } else {
+    const double pressure = fields.number("pressure", any_number, "Pa");
+    for (const SurfaceShare& share : shares) forces.push_back({share.node, -pressure * share.normal});
+  }
+  return forces;
+}
+
+std::optional<std::string> held_nodes_note(const JsonFields& fields, const std::vector<NodalForce>& forces,
+                                           const Body& body, const std::string& what) {
+  double held = 0, all = 0;
+  const std::vector<HeldAxes>& sliding = held_axes(body);
+  for (const auto& [node, force] : forces) {
+    int axes = std::ranges::binary_search(fixed_nodes(body), node) ? HeldAxes::all : 0;
+    const auto slides = std::ranges::lower_bound(sliding, node, {}, &HeldAxes::node);
+    if (slides != sliding.end() && slides->node == node) axes = slides->axes;
+    for (int c = 0; c < 3; ++c) {
+      all += std::abs(force[c]);
+      if (axes >> c & 1) held += std::abs(force[c]);
+    }
+  }
+  if (!(held > 0.01 * all)) return {};
+  return fields.source() + ": " + fields.place() + ": " + shown(100 * held / all, 3) + " % of this " + what +
          " acts on nodes that the model holds, and moves nothing";
 }
 
@@ -92,25 +133,18 @@ std::string read_option(const JsonFields& fields, const OptionInfo& option) {
 AnyOutsideForce read_outside_force(const JsonFields& fields, const Body& body) {
   const Choice choice = read_choice(fields, "force", outside_forces());
   TouchedNodes where{node_positions(body), {}, {}, {}};
-  if (fields.contains("nodes")) {
-    for (const auto& [node, share] : read_nodes(fields, body)) where.nodes.push_back(node);
+  NodeGroup part;
+  if (fields.contains("nodes") || fields.contains("region")) {
+    if (fields.contains("nodes") + fields.contains("region") != 1)
+      throw InputError(fields.source() + ": " + fields.place() + " needs one of 'nodes' and 'region'");
+    part = read_group(fields, body);
   } else {
-    where.nodes = all_nodes(num_nodes(body));
+    part.nodes = all_nodes(num_nodes(body));
   }
+  where.nodes = part.nodes;
   const Vector mass = nodal_mass(body);
-  where.shares.resize(static_cast<Index>(where.nodes.size()));
-  std::vector<char> touched(static_cast<std::size_t>(mass.size()), false);
-  for (std::size_t k = 0; k < where.nodes.size(); ++k) {
-    where.shares[static_cast<Index>(k)] = mass[where.nodes[k]];
-    touched[static_cast<std::size_t>(where.nodes[k])] = true;
-  }
-  where.shares /= where.shares.sum();
-  const Surface surface(body);
-  for (const Triangle& triangle : surface.triangles) {
-    const std::array<Index, 3> corners{surface.nodes[triangle[0]], surface.nodes[triangle[1]],
-                                       surface.nodes[triangle[2]]};
-    if (touched[corners[0]] && touched[corners[1]] && touched[corners[2]]) where.triangles.push_back(corners);
-  }
+  where.shares = mass(where.nodes) / mass(where.nodes).sum();
+  for (const Triangle& triangle : surface_triangles(body, part)) where.triangles.push_back(triangle);
   try {
     return outside_forces().at(choice.name).make(where, choice.options);
   } catch (const std::invalid_argument& error) {

@@ -4,6 +4,7 @@
 #include <core/registry.hpp>
 #include <io/text/json_fields.hpp>
 #include <physics/body/body.hpp>
+#include <physics/load/loads.hpp>
 #include <physics/load/outside_force_library.hpp>
 
 #include <optional>
@@ -21,13 +22,18 @@ Interval node_range(const Body& body);
 
 /// Nodes with their shares of a whole.
 using NodeShares = std::vector<std::pair<Index, double>>;
-/// The nodes that "node", "at" or "nodes" names, exactly one of them, with their shares of the whole: by
+/// The nodes that "node", "at", "nodes" or "region" names, exactly one of them, with their shares of the whole: by
 /// mass, so that a finer mesh is not pulled harder.
 NodeShares read_nodes(const JsonFields& fields, const Body& body);
 
+/// The forces on nodes of a "traction" [Pa] of fixed direction, or of a "pressure" [Pa] that pushes inward on the surface at
+/// rest: on all faces whose nodes are among those that "nodes" or "region" selects.
+/// \throws InputError if there are none, or not exactly one of the two.
+std::vector<NodalForce> read_surface_load(const JsonFields& fields, const Body& body);
+
 /// Says what share of a load acts on nodes that the model holds, where it moves nothing; nothing if none to speak of.
-std::optional<std::string> held_nodes_note(const JsonFields& fields, const NodeShares& nodes, const Body& body,
-                                           const std::string& what);
+std::optional<std::string> held_nodes_note(const JsonFields& fields, const std::vector<NodalForce>& forces,
+                                           const Body& body, const std::string& what);
 
 /// An option of a registry's entry, as text.
 std::string read_option(const JsonFields& fields, const OptionInfo& option);

@@ -75,7 +75,7 @@ EditScene scene_of(const JsonFields& fields, const ViewModel& model) {
     if (const std::size_t count = scene.objects_if(key).size(); count > EditSession::most_handles)
       scene.fail(key,
                  "has " + std::to_string(count) + ", expected at most " + std::to_string(EditSession::most_handles));
-  for (const char* key : {"springs", "outside"})
+  for (const char* key : {"springs", "surface", "outside"})
     if (scene.contains(key)) scene.fail(key, "is not taken from clients");
   return read_edit_scene(scene, model.model.body);
 }

@@ -90,7 +90,7 @@ const std::vector<Decision>& decisions() {
       refused("bad_truncated_bin.msh", "byte 1538: the file ends inside"),
       refused("bad_truncated_bin41.msh", "byte 219: announces 27 nodes"),
       refused("bad_count_huge_bin41.msh", "byte 183: announces 4611686018427387904 nodes"),
-      refused("bad_version.msh", ":2: expected Gmsh format version 2.2 or 4.1, found 9.9"),
+      refused("bad_version.msh", ":2: expected Gmsh format version 2.2, 4.0 or 4.1, found 9.9"),
       refused("bad_empty.msh", "the file is empty"), refused("bad_zero_nodes.msh", "holds no tetrahedra"),
       refused("bad_wrong_extension.msh", "triangle surface (OFF)"), refused("bad_base64.vtu", "well-formed XML"),
       refused("bad_medit_2d.mesh", ":2: expected Dimension 3, found 2"),

@@ -50,6 +50,31 @@ TEST(SelectNodes, TakesOneSideOfAPlane) {
   expect("x<25.5%", [](const Point& p) { return p[0] <= 0.25; });
 }
 
+TEST(SelectNodes, TakesPlanesUnitsAndSeveralComparisons) {
+  const TetMesh mesh = bar();
+  const auto expect = [&](const char* rule, const auto& holds) {
+    EXPECT_EQ(select_nodes(mesh.nodes, rule), nodes_where(mesh, holds)) << rule;
+  };
+  expect("x=0.5", [](const Point& p) { return p[0] == 0.5; });
+  expect("x = 50 %", [](const Point& p) { return p[0] == 0.5; });
+  expect("x=500 mm", [](const Point& p) { return p[0] == 0.5; });
+  expect("x>=25cm", [](const Point& p) { return p[0] >= 0.25; });
+  expect("x=0 and y=0", [](const Point& p) { return p[0] == 0 && p[1] == 0; });
+  expect("x=0 or y=0", [](const Point& p) { return p[0] == 0 || p[1] == 0; });
+  // "and" binds more
+  expect("x=0 and y=0 or x=1 and z=0",
+         [](const Point& p) { return (p[0] == 0 && p[1] == 0) || (p[0] == 1 && p[2] == 0); });
+  expect("x=0 or y=0 and z=0", [](const Point& p) { return p[0] == 0 || (p[1] == 0 && p[2] == 0); });
+  EXPECT_THAT(refusal([&] { select_nodes(mesh.nodes, "x=0 and x=1"); }), HasSubstr("selects no node"));
+}
+
+TEST(SelectNodes, FindsAPlaneThroughRoundedCoordinates) {
+  TetMesh mesh = bar();
+  const std::vector<Index> plane = select_nodes(mesh.nodes, "x=0");
+  for (const Index v : plane) mesh.nodes(v, 0) += v % 2 == 0 ? 3e-8 : -3e-8;
+  EXPECT_EQ(select_nodes(mesh.nodes, "x=0"), plane);
+}
+
 TEST(SelectNodes, CountsSharesFromTheLowerEndWhereverTheMeshLies) {
   TetMesh mesh = bar();
   const std::vector<Index> expected = select_nodes(mesh.nodes, "x<=25%");
@@ -60,8 +85,8 @@ TEST(SelectNodes, CountsSharesFromTheLowerEndWhereverTheMeshLies) {
 
 TEST(SelectNodes, RefusesOtherRulesAndEmptySets) {
   const TetMesh mesh = bar();
-  for (const char* rule :
-       {"", "y", "y<", "w<1", "y=1", "y<<1", "<1", "y<1%%", "y<a", "y<1 2", "y<nan", "xy<1", "y<1%x"})
+  for (const char* rule : {"", "y", "y<", "w<1", "y=", "y<<1", "y<1 and", "y<1 or z", "y<1 and  or x>0", "y<2 kg", "<1",
+                           "y<1%%", "y<a", "y<1 2", "y<nan", "xy<1", "y<1%x"})
     EXPECT_THAT(refusal([&] { select_nodes(mesh.nodes, rule); }),
                 HasSubstr("\"" + std::string(rule) + "\": expected an axis"));
   EXPECT_THAT(refusal([&] { select_nodes(mesh.nodes, "x<0%"); }), HasSubstr("\"x<0%\": selects no node"));

@@ -53,13 +53,14 @@ void expect_kept(const MeshFile& file, const Mesh& expected) {
   EXPECT_TRUE(is_same(mesh.nodes, expected.nodes));
   EXPECT_EQ(mesh.cells, expected.cells);
   EXPECT_EQ(mesh.region, expected.region);
-  if (file.format.starts_with("gmsh") || file.format == "vega") {
+  if (file.format.starts_with("gmsh") || file.format == "vega" || file.format == "abaqus") {
     EXPECT_EQ(mesh.region_names, expected.region_names);
   }
   EXPECT_EQ(notes.numbers.cell.size(), expected.cells.size());
   if (file.format != "vega") {
     EXPECT_THAT(notes.warnings, IsEmpty());
   }
+  if (file.format == "abaqus") return;  // which does not say how much it holds
   // cut off anywhere, it is refused, or only what follows the cells is lost
   for (std::size_t size = 0; size < file.bytes.size(); size += 1 + file.bytes.size() / 37) {
     MeshFile cut = file;

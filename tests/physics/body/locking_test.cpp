@@ -16,7 +16,7 @@
 namespace supple::test {
 namespace {
 
-constexpr double length = 1, height = 0.125, young = 1e5, density = 1000;
+constexpr double length = 1, height = 0.125, young = 1e5, beam_density = 1000;
 
 /// Softest frequency of a body [rad/s].
 double softest(const Body& body) {
@@ -38,12 +38,12 @@ Body bar(double poisson, const std::string& law = "stvk") {
   std::vector<Index> end;
   for (Index v = 0; v < mesh.num_nodes(); ++v)
     if (mesh.nodes(v, 0) < 1e-9) end.push_back(v);
-  return isotropic_solid(mesh, {.young = young, .poisson = poisson}, std::move(end), law, density);
+  return isotropic_solid(mesh, {.young = young, .poisson = poisson}, std::move(end), law, beam_density);
 }
 
 /// Of a clamped slender beam, (1.8751 / l)² √(E I / ρ A): whatever Poisson's ratio is.
 double beam() {
-  return std::pow(1.87510407 / length, 2) * std::sqrt(young * height * height / 12 / density);
+  return std::pow(1.87510407 / length, 2) * std::sqrt(young * height * height / 12 / beam_density);
 }
 
 TEST(Locking, IsOfLinearTetsAndHexahedraOnly) {

@@ -1,3 +1,4 @@
+#include <physics/load/follower_pressure.hpp>
 #include <physics/load/outside_force_library.hpp>
 #include <physics/load/penalty_floor.hpp>
 #include <physics/statics/static_solver.hpp>
@@ -26,6 +27,17 @@ struct FloorAmidABar {
   static double reach() { return 0.3; }
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(Floor, OutsideForceConformance, FloorAmidABar);
+
+/// On an open part of a surface.
+struct PressureOnABar {
+  static FollowerPressure make() {
+    std::vector<Triangle> triangles = boundary_faces(bar_mesh());
+    triangles.resize(20);
+    return {bar_mesh().nodes, triangles, {.pressure = 300}};
+  }
+  static double reach() { return 0.05; }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(Pressure, OutsideForceConformance, PressureOnABar);
 
 /// Springs between two nodes and points in space, coupled by one more between the nodes: as a user would write it.
 struct Springs {
@@ -58,6 +70,42 @@ struct SpringsOfOnesOwn {
 INSTANTIATE_TYPED_TEST_SUITE_P(Springs, OutsideForceConformance, SpringsOfOnesOwn);
 
 namespace {
+
+// A closed surface under pressure: no force, no moment, and −p times the volume is the potential.
+TEST(FollowerPressure, IsTheGradientOfPressureTimesTheVolume) {
+  const TetMesh mesh = bar_mesh();
+  const double p = 250;
+  const FollowerPressure pressure(mesh.nodes, boundary_faces(mesh), {.pressure = p});
+  const Index k = static_cast<Index>(pressure.nodes().size());
+  const Vector flat = random_vector(3 * k, 0.02, 3);
+  const Points u = Eigen::Map<const Points>(flat.data(), k, 3);
+  Points f;
+  pressure.force(u, f);
+  const Points x = mesh.nodes(std::vector<Index>(pressure.nodes().begin(), pressure.nodes().end()), Eigen::all) + u;
+  Point moment = Point::Zero();
+  for (Index a = 0; a < k; ++a) moment += Point(x.row(a)).cross(Point(f.row(a)));
+  EXPECT_LT(f.colwise().sum().norm(), 1e-12 * f.rowwise().norm().sum());
+  EXPECT_LT(moment.norm(), 1e-12 * f.rowwise().norm().sum());
+  const auto volume = [&](const Points& displacements) {
+    TetMesh moved = mesh;
+    for (Index a = 0; a < k; ++a)
+      moved.nodes.row(pressure.nodes()[static_cast<std::size_t>(a)]) += displacements.row(a);
+    double sum = 0;
+    for (Index e = 0; e < moved.num_cells(); ++e) sum += cell_volume(moved, e);
+    return sum;
+  };
+  const Vector flat_way = random_vector(3 * k, 1, 4);
+  const Points way = Eigen::Map<const Points>(flat_way.data(), k, 3);
+  const double h = 1e-5;
+  EXPECT_NEAR(f.cwiseProduct(way).sum(), -p * (volume(u + h * way) - volume(u - h * way)) / (2 * h), 1e-7 * p);
+}
+
+TEST(FollowerPressure, RefusesNoSurfaceAndWhatIsNotANumber) {
+  const TetMesh mesh = bar_mesh();
+  EXPECT_THROW(FollowerPressure(mesh.nodes, {}, {.pressure = 1}), std::invalid_argument);
+  EXPECT_THROW(FollowerPressure(mesh.nodes, {{0, 1, 1000}}, {.pressure = 1}), std::invalid_argument);
+  EXPECT_THROW(FollowerPressure(mesh.nodes, boundary_faces(mesh), {.pressure = std::nan("")}), std::invalid_argument);
+}
 
 using testing::HasSubstr;
 using testing::ThrowsMessage;

@@ -30,15 +30,15 @@ void expect_columns(const C& block, const Matrix& matrix, const std::vector<Inde
 }
 
 // Both representations of columns, from the same numbers.
-const Matrix A = gaussian(60, 320, 1);
-const DenseProblem dense(A, gaussian(60, 1, 2));
-const test::ColumnsOnly on_demand(A, dense.rhs());
+const Matrix stored = gaussian(60, 320, 1);
+const DenseProblem stored_problem(stored, gaussian(60, 1, 2));
+const test::ColumnsOnly on_demand(stored, stored_problem.rhs());
 
 template <typename P>
 struct Block : ::testing::Test {
   static const P& problem() {
     if constexpr (std::is_same_v<P, DenseProblem>)
-      return dense;
+      return stored_problem;
     else
       return on_demand;
   }
@@ -47,59 +47,60 @@ using Problems = ::testing::Types<DenseProblem, test::ColumnsOnly>;
 TYPED_TEST_SUITE(Block, Problems);
 
 TYPED_TEST(Block, HoldsTheColumnsOfTheMatrix) {
-  expect_columns(columns_of(this->problem(), some), A, some);
+  expect_columns(columns_of(this->problem(), some), stored, some);
 }
 
 TYPED_TEST(Block, GrowsAndShrinksLikeItsIndexSet) {
   auto block = columns_of(this->problem(), some);
   block.append(columns_of(this->problem(), more));
-  expect_columns(block, A, {7, 2, 300, 11, 0, 150});
+  expect_columns(block, stored, {7, 2, 300, 11, 0, 150});
   const std::vector<Index> positions{5, 0, 2};
-  expect_columns(block.subset(positions), A, {150, 7, 300});
+  expect_columns(block.subset(positions), stored, {150, 7, 300});
   auto empty = columns_of(this->problem(), std::vector<Index>{});
   EXPECT_EQ(empty.size(), 0);
   EXPECT_EQ(empty.times(Vector(0)), Vector::Zero(60));
   empty.append(block);
-  expect_columns(empty, A, {7, 2, 300, 11, 0, 150});
+  expect_columns(empty, stored, {7, 2, 300, 11, 0, 150});
 }
 
 TYPED_TEST(Block, MultipliesWithAnother) {
-  const Matrix expected = A(Eigen::all, some).transpose() * A(Eigen::all, more);
+  const Matrix expected = stored(Eigen::all, some).transpose() * stored(Eigen::all, more);
   EXPECT_TRUE(columns_of(this->problem(), some).gram(columns_of(this->problem(), more)).isApprox(expected, 1e-13));
 }
 
 TYPED_TEST(Block, GivesTheSameBitsWhateverTheNumberOfThreads) {
-  std::vector<Index> all(A.cols());
+  std::vector<Index> all(stored.cols());
   std::iota(all.begin(), all.end(), Index{0});
   const auto block = columns_of(this->problem(), all);
   set_num_threads(1);
   const Matrix G = block.gram(block);
-  const Vector g = block.transpose_times(dense.rhs());
+  const Vector g = block.transpose_times(stored_problem.rhs());
   set_num_threads(4);
   EXPECT_EQ(block.gram(block), G);
-  EXPECT_EQ(block.transpose_times(dense.rhs()), g);
+  EXPECT_EQ(block.transpose_times(stored_problem.rhs()), g);
   set_num_threads(0);
 }
 
 TEST(DenseProblem, MultipliesWithAllItsColumns) {
-  EXPECT_TRUE(dense.transpose_times(dense.rhs()).isApprox(A.transpose() * dense.rhs(), 1e-13));
-  EXPECT_TRUE(dense.squared_norms().isApprox(A.colwise().squaredNorm().transpose(), 1e-13));
+  EXPECT_TRUE(
+      stored_problem.transpose_times(stored_problem.rhs()).isApprox(stored.transpose() * stored_problem.rhs(), 1e-13));
+  EXPECT_TRUE(stored_problem.squared_norms().isApprox(stored.colwise().squaredNorm().transpose(), 1e-13));
 }
 
 TEST(DenseProblem, RestrictsToGroupsOfRows) {
-  const DenseProblem whole(A, dense.rhs(), 20);
+  const DenseProblem whole(stored, stored_problem.rhs(), 20);
   ASSERT_EQ(whole.num_groups(), 3);
   const DenseRows part = whole.restricted_to(std::vector<Index>{2, 0});
-  Matrix expected(40, A.cols());
-  expected << A.bottomRows(20), A.topRows(20);
+  Matrix expected(40, stored.cols());
+  expected << stored.bottomRows(20), stored.topRows(20);
   expect_columns(columns_of(part, some), expected, some);
   EXPECT_TRUE(part.transpose_times(part.rhs()).isApprox(expected.transpose() * part.rhs(), 1e-13));
   EXPECT_TRUE(part.squared_norms().isApprox(expected.colwise().squaredNorm().transpose(), 1e-13));
   const DenseRows first = part.restricted_to(std::vector<Index>{1});  // which is group 0 of the whole
-  expect_columns(columns_of(first, some), A.topRows(20), some);
-  EXPECT_EQ(first.rhs(), dense.rhs().head(20));
-  EXPECT_EQ(part.rhs().head(20), dense.rhs().tail(20));
-  EXPECT_EQ(part.rhs().tail(20), dense.rhs().head(20));
+  expect_columns(columns_of(first, some), stored.topRows(20), some);
+  EXPECT_EQ(first.rhs(), stored_problem.rhs().head(20));
+  EXPECT_EQ(part.rhs().head(20), stored_problem.rhs().tail(20));
+  EXPECT_EQ(part.rhs().tail(20), stored_problem.rhs().head(20));
 }
 
 TEST(DenseProblem, RefusesWhatDoesNotFit) {

@@ -1,0 +1,19 @@
+#pragma once
+/// \file What ParaView gets of a state: stress and the like, with their units.
+
+#include <io/frames/vtu_writer.hpp>
+#include <physics/body/cell_stress.hpp>
+
+#include <vector>
+
+namespace supple {
+
+/// Where nodes stand in the user's file, if it is not where they stand here.
+void add_places(VtuFields& fields, const NodePlaces& places, const std::vector<Index>& nodes);
+/// 0 … count − 1.
+std::vector<Index> all_nodes(Index count);
+
+/// Stress, strain and energy density of every cell.
+void add_stress(VtuFields& fields, const CellStress& stress);
+
+}  // namespace supple
