@@ -38,12 +38,7 @@ void write_shapes(const std::filesystem::path& path, const Body& body, const Vib
     fields.point_data.push_back(vector_field(
         "mode " + std::to_string(k + 1) + ", " + shown(modes.omega[k] / (2 * std::numbers::pi), 5) + " Hz", shape));
   }
-  add_places(fields, node_places(body), all_nodes(num_nodes(body)));
-  const ExitGuard guard(path);
-  if (const Shell* shell = std::get_if<Shell>(&body))
-    write_vtu(path, shell->mesh.nodes, shell->mesh.triangles, fields);
-  else
-    visit_solid(body, [&](const auto& solid) { write_vtu(path, solid.mesh.nodes, solid.mesh.cells, fields); });
+  write_body(path, body, node_positions(body), std::move(fields));
 }
 
 }  // namespace

@@ -243,4 +243,10 @@ std::string selector_help() {
   return "Selectors and their options:\n" + described(selectors());
 }
 
+void refuse_options_of_meshes(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options())
+    if (option->count() > 0 && (option->get_group() == object_group || option->get_group() == method_group))
+      throw InputError("--" + option->get_lnames().front() + " is for meshes, and this is a model");
+}
+
 }  // namespace supple

@@ -35,6 +35,8 @@ void declare_problem(CLI::App& command, ProblemOptions& problem);
 void declare_fitting(CLI::App& command, ProblemOptions& problem);
 /// The subspace and the training.
 void declare_training(CLI::App& command, ProblemOptions& problem);
+/// \throws InputError for options of meshes that stand beside a model.
+void refuse_options_of_meshes(const CLI::App& command);
 /// Where stages are kept.
 void declare_checkpoint(CLI::App& command, ProblemOptions& problem);
 /// How models are compared with the full object. \param least  number of loads.

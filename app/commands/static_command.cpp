@@ -33,22 +33,6 @@ std::string shown_point(const Point& x) {
   return "(" + shown(x[0], 5) + ", " + shown(x[1], 5) + ", " + shown(x[2], 5) + ")";
 }
 
-/// All that loads exert in a state.
-Point sum_of(const Loads& loads, const Body& body, const Vector& u) {
-  Point sum = nodal_mass(body).sum() * loads.gravity;
-  for (const NodalForce& load : loads.forces) sum += load.force;
-  for (const auto& [node, stiffness, displacement] : loads.springs)
-    sum += stiffness * (displacement - u.segment<3>(3 * node));
-  for (const AnyOutsideForce& other : loads.others) {
-    Points at(static_cast<Index>(other.nodes().size()), 3), forces = Points::Zero(at.rows(), 3);
-    for (Index a = 0; a < at.rows(); ++a)
-      at.row(a) = u.segment<3>(3 * other.nodes()[static_cast<std::size_t>(a)]).transpose();
-    other.force(at, forces);
-    sum += forces.colwise().sum().transpose();
-  }
-  return sum;
-}
-
 void write_reactions(const std::filesystem::path& path, const Reactions& reactions, const Points& forces,
                      const Body& body) {
   CsvTable table{{"node"}, {"x", "m"}, {"y", "m"}, {"z", "m"}, {"rx", "N"}, {"ry", "N"}, {"rz", "N"}};
@@ -65,14 +49,8 @@ void write_reactions(const std::filesystem::path& path, const Reactions& reactio
 void write_state(const std::filesystem::path& path, const Body& body, const Vector& u, const RowMatrix& reaction,
                  const std::optional<CellStress>& stress) {
   VtuFields fields{.point_data = {vector_field("displacement [m]", u), {"reaction [N]", reaction}}};
-  add_places(fields, node_places(body), all_nodes(num_nodes(body)));
   if (stress) add_stress(fields, *stress);
-  const Points positions = node_positions(body) + as_points(u);
-  const ExitGuard guard(path);
-  if (const Shell* shell = std::get_if<Shell>(&body))
-    write_vtu(path, positions, shell->mesh.triangles, fields);
-  else
-    visit_solid(body, [&](const auto& solid) { write_vtu(path, positions, solid.mesh.cells, fields); });
+  write_body(path, body, node_positions(body) + as_points(u), std::move(fields));
 }
 
 /// Deformed, beside the object at rest, in the colours of the stress, or of the displacement where there is none.
@@ -97,11 +75,7 @@ void StaticCommand::run() const {
   require_writable(json);
   StageTimes times;
   const bool has_model = is_model(mesh);
-  if (has_model) {
-    for (const CLI::Option* option : declared_->get_options())
-      if (option->count() > 0 && option->get_group() == object_group)
-        throw InputError("--" + option->get_lnames().front() + " is for meshes, and this is a model");
-  }
+  if (has_model) refuse_options_of_meshes(*declared_);
   std::optional<ReducedModel> model;
   if (has_model) model = load_model(mesh);
   const Body body = model ? model->body : load_body(*this, load_mesh(mesh, mesh_unit));
@@ -136,7 +110,7 @@ void StaticCommand::run() const {
   const Points forces = reactions(found.u, loads);
   const Points positions = node_positions(body) + as_points(found.u);
   const auto [reaction, moment] = reactions.resultant(forces, positions);
-  const Point load = sum_of(loads, body, found.u);
+  const Point load = total_force(loads, body, found.u);
   std::optional<CellStress> stress;
   if (has_cell_stress(body)) stress = cell_stress(body, found.u);
   RowMatrix reaction_of_node = RowMatrix::Zero(num_nodes(body), 3);
@@ -223,7 +197,7 @@ void StaticCommand::run() const {
     print_stages(stdout, times.seconds(), times.total());
   }
   write_json(json, report);
-  if (!has_cell_stress(body))
+  if (!stress)
     warn(std::holds_alternative<Shell>(body)
              ? "there is no stress: a discrete shell has energies of edges and flaps"
              : "there is no stress: the law " + std::string(supple::law(body)) + " tells none");

@@ -117,13 +117,6 @@ std::shared_ptr<const ViewModel> loaded(const ViewCommand& command) {
   }
 }
 
-/// \throws InputError for options of meshes that stand beside a model.
-void refuse_options_of_meshes(const CLI::App& command) {
-  for (const CLI::Option* option : command.get_options())
-    if (option->count() > 0 && (option->get_group() == object_group || option->get_group() == method_group))
-      throw InputError("--" + option->get_lnames().front() + " is for meshes, and this is a model");
-}
-
 /// While it lives, a signal takes leave of the server's clients; where one has, it waits for the end of the process.
 struct Farewell {
   explicit Farewell(ViewServer& server) {

@@ -1,3 +1,4 @@
+#include <app/report/exit_guard.hpp>
 #include <app/scene/result_fields.hpp>
 
 #include <numeric>
@@ -16,6 +17,15 @@ std::vector<Index> all_nodes(Index count) {
   std::vector<Index> nodes(static_cast<std::size_t>(count));
   std::iota(nodes.begin(), nodes.end(), Index{0});
   return nodes;
+}
+
+void write_body(const std::filesystem::path& path, const Body& body, const Points& positions, VtuFields fields) {
+  add_places(fields, node_places(body), all_nodes(num_nodes(body)));
+  const ExitGuard guard(path);
+  if (const Shell* shell = std::get_if<Shell>(&body))
+    write_vtu(path, positions, shell->mesh.triangles, fields);
+  else
+    visit_solid(body, [&](const auto& solid) { write_vtu(path, positions, solid.mesh.cells, fields); });
 }
 
 void add_stress(VtuFields& fields, const CellStress& stress) {

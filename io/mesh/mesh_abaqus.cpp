@@ -1,6 +1,4 @@
 #include <io/mesh/mesh_formats.hpp>
-#include <io/text/unit.hpp>
-#include <physics/mesh/elements.hpp>
 
 #include <algorithm>
 #include <cctype>

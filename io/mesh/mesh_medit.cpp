@@ -107,7 +107,10 @@ void read_medit(Cursor& in, FileMesh& mesh) {
     }
   }
   if (num_vertices < 0) in.fail("expected a section Vertices");
-  if (std::set<double>(references.begin(), references.end()).size() <= most_groups_of_points)
+  std::set<double> distinct;
+  for (const double reference : references)
+    if (!std::isnan(reference)) distinct.insert(reference);
+  if (distinct.size() <= most_groups_of_points)
     for (Index v = 0; v < num_vertices; ++v)
       if (const auto group = group_of("point", references[static_cast<std::size_t>(v)]))
         mesh.node_groups[*group].nodes.push_back(v);

@@ -17,7 +17,25 @@ std::vector<Index> places_in(const std::vector<Index>& list, Index num_nodes) {
   return place;
 }
 
+/// Of an outside force on each of its nodes, where those of the object are displaced so.
+Points force_of(const AnyOutsideForce& outside, VectorIn u) {
+  Points displacements(static_cast<Index>(outside.nodes().size()), 3), forces = Points::Zero(displacements.rows(), 3);
+  for (Index a = 0; a < displacements.rows(); ++a)
+    displacements.row(a) = u.segment<3>(3 * outside.nodes()[static_cast<std::size_t>(a)]).transpose();
+  outside.force(displacements, forces);
+  return forces;
+}
+
 }  // namespace
+
+Point total_force(const Loads& loads, const Body& body, VectorIn u) {
+  Point sum = nodal_mass(body).sum() * loads.gravity;
+  for (const NodalForce& load : loads.forces) sum += load.force;
+  for (const auto& [node, stiffness, displacement] : loads.springs)
+    sum += stiffness * (displacement - u.segment<3>(3 * node));
+  for (const AnyOutsideForce& other : loads.others) sum += force_of(other, u).colwise().sum().transpose();
+  return sum;
+}
 
 Reactions::Reactions(const Body& body) {
   std::map<Index, std::uint8_t> held;
@@ -71,11 +89,8 @@ Points Reactions::operator()(VectorIn u, const Loads& loads) const {
   for (const auto& [node, stiffness, displacement] : loads.springs)
     if (at(node) >= 0) r.row(at(node)) += stiffness * (u.segment<3>(3 * node) - displacement).transpose();
   for (const AnyOutsideForce& other : loads.others) {
-    Points displacements(static_cast<Index>(other.nodes().size()), 3), forces = Points::Zero(displacements.rows(), 3);
-    for (Index a = 0; a < displacements.rows(); ++a)
-      displacements.row(a) = u.segment<3>(3 * other.nodes()[static_cast<std::size_t>(a)]).transpose();
-    other.force(displacements, forces);
-    for (Index a = 0; a < displacements.rows(); ++a)
+    const Points forces = force_of(other, u);
+    for (Index a = 0; a < forces.rows(); ++a)
       if (const Index k = at(other.nodes()[static_cast<std::size_t>(a)]); k >= 0) r.row(k) -= forces.row(a);
   }
   return along_held_axes(std::move(r));

@@ -10,6 +10,9 @@
 
 namespace supple {
 
+/// All that loads exert on an object in a state [N]. \param u  displacements of all nodes, 3n [m].
+Point total_force(const Loads& loads, const Body& body, VectorIn u);
+
 /// What supports do to an object, exact in any state, from the cells at held nodes alone: along held axes,
 /// r = f(u) + D v − f_ext, so that M a + D v + f(u) = f_ext + r there. Along free axes it is zero. In a state of a reduced
 /// model r is the reaction of the full object in that state.

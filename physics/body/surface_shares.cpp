@@ -107,7 +107,7 @@ class IsIn {
   IsIn(const NodeGroup& part, Index num_nodes) : part_(part), is_node_(static_cast<std::size_t>(num_nodes), false) {
     for (const Index v : part.nodes) is_node_[static_cast<std::size_t>(v)] = true;
   }
-  /// \param face  all of its nodes, corners first.  \param num_corners  3 or 4
+  /// \param face  all of its nodes, corners first.
   template <std::size_t n>
   bool operator()(const std::array<Index, n>& face) const {
     if (part_.faces.empty())

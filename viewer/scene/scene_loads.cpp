@@ -54,8 +54,8 @@ NodeGroup read_group(const JsonFields& fields, const Body& body) {
     if (std::holds_alternative<Shell>(body)) throw InputError("a surface has no regions");
     return visit_solid(body, [&](const auto& solid) -> NodeGroup {
       NodeGroup group{nodes_of_region(solid.mesh, text), {}};
-      const auto own = solid.mesh.node_groups.find(text);  // unless cells have the name
-      return own != solid.mesh.node_groups.end() && own->second.nodes == group.nodes ? own->second : group;
+      const auto own = node_groups(body).find(text);  // unless cells have the name
+      return own != node_groups(body).end() && own->second.nodes == group.nodes ? own->second : group;
     });
   } catch (const InputError& error) {
     fields.fail(is_region ? "region" : "nodes", std::string("selects nothing: ") + error.what());
